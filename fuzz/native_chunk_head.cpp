@@ -20,29 +20,31 @@ bool read(const PlaneLayout& layout, std::span<const std::byte> bytes, ChunkHead
 }
 
 bool equal(const Overrides& a, const Overrides& b) {
-  return std::ranges::equal(a.members, b.members,
+  return std::ranges::equal(a.distributions, b.distributions,
                             [](const auto& s, const auto& t) {
-                              return s.number == t.number && s.member.unit == t.member.unit &&
-                                     s.member.shift == t.member.shift &&
-                                     std::ranges::equal(s.member.units, t.member.units);
+                              return s.number == t.number &&
+                                     s.distribution.unit == t.distribution.unit &&
+                                     s.distribution.shift == t.distribution.shift &&
+                                     std::ranges::equal(s.distribution.units, t.distribution.units);
                             }) &&
          std::ranges::equal(a.contexts, b.contexts, [](const auto& s, const auto& t) {
-           return s.context == t.context && s.member == t.member;
+           return s.context == t.context && s.distribution == t.distribution;
          });
 }
 
-bool equal(const OwnHits& a, const OwnHits& b) {
-  if (a.members != b.members) return false;
-  for (unsigned m = 0; m < a.members; ++m) {
+bool equal(const OwnRepeats& a, const OwnRepeats& b) {
+  if (a.distributions != b.distributions) return false;
+  for (unsigned m = 0; m < a.distributions; ++m) {
     if (!std::ranges::equal(a.end[m], b.end[m])) return false;
   }
-  return a.members == 0 || std::ranges::equal(a.map, b.map);
+  return a.distributions == 0 || std::ranges::equal(a.map, b.map);
 }
 
 bool equal(const ChunkHead& a, const ChunkHead& b) {
   return a.lanes == b.lanes && a.flat == b.flat && a.coded == b.coded &&
-         std::ranges::equal(a.constant, b.constant) && std::ranges::equal(a.cap, b.cap) &&
-         std::ranges::equal(a.tables.set, b.tables.set) && equal(a.tables.hits, b.tables.hits) &&
+         std::ranges::equal(a.constant, b.constant) && std::ranges::equal(a.frequent, b.frequent) &&
+         std::ranges::equal(a.tables.set, b.tables.set) &&
+         equal(a.tables.repeats, b.tables.repeats) &&
          std::ranges::equal(a.tables.overrides, b.tables.overrides,
                             [](const auto& s, const auto& t) { return equal(s, t); });
 }
@@ -56,16 +58,17 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   ChunkHead head, again;
   if (!read(layout, bytes.span(), head)) return 0;
   for (const auto& overrides : head.tables.overrides) {
-    for (const auto& r : overrides.members) {
-      fuzz::check(r.number < kMembers && valid(r.member), "members are valid");
+    for (const auto& r : overrides.distributions) {
+      fuzz::check(r.number < kDistributions && valid(r.distribution), "distributions are valid");
     }
-    for (const auto& m : overrides.contexts) fuzz::check(m.member < kMembers, "members exist");
+    for (const auto& m : overrides.contexts)
+      fuzz::check(m.distribution < kDistributions, "distributions exist");
   }
-  const OwnHits& hits = head.tables.hits;
-  for (unsigned m = 0; m < hits.members; ++m) {
-    fuzz::check(
-        hits.end[m][0] > 0 && hits.end[m][0] < hits.end[m][1] && hits.end[m][1] < kProbabilityScale,
-        "every hit symbol has a frequency");
+  const OwnRepeats& repeats = head.tables.repeats;
+  for (unsigned m = 0; m < repeats.distributions; ++m) {
+    fuzz::check(repeats.end[m][0] > 0 && repeats.end[m][0] < repeats.end[m][1] &&
+                    repeats.end[m][1] < kProbabilityScale,
+                "every repeat symbol has a frequency");
   }
   std::vector<std::byte> written;
   write_head(layout, head, written);

@@ -163,7 +163,7 @@ class LearnedNumbers {
     for (std::uint32_t left = w - 1; left > 0; --left) {
       const bool told = w - left <= 2;
       const bool one = told ? bit(digits_[{kind, w, value}]) : false;
-      if (!told) return (value << left | source_.plain(left)) - 1;
+      if (!told) return (value << left | source_.bypass(left)) - 1;
       value = 2 * value + (one ? 1 : 0);
     }
     return value - 1;

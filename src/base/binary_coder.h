@@ -1,5 +1,5 @@
-// Binary range coder: codes one bit at a time, each with its own probability (docs/native.md,
-// "Binary coder"). Encoder and decoder have the same calls, so that a model is written once.
+// Binary range coder: one bit at a time, each with a probability of its own (docs/native.md,
+// "Binary coder"). Encoder and decoder offer the same calls, so that a model is written once.
 #pragma once
 
 #include <cstddef>
@@ -9,10 +9,10 @@
 
 namespace gicodec {
 
-inline constexpr unsigned kBitScale = 16;               ///< probabilities are in 1/2^16
-inline constexpr std::uint32_t kLeastRange = 1U << 24;  ///< below it, the coder shifts out a byte
-inline constexpr unsigned kBinaryTail = 4;              ///< bytes of a code value
-inline constexpr unsigned kMaxPlainBits = 8;            ///< bypass bits per step
+inline constexpr unsigned kBitScale = 16;             ///< probabilities are of 2^16
+inline constexpr std::uint32_t kMinRange = 1U << 24;  ///< below it a byte is output
+inline constexpr unsigned kBinaryTail = 4;            ///< bytes that a code has
+inline constexpr unsigned kMaxBypassBits = 8;         ///< of one step
 
 class BinaryEncoder {
  public:
@@ -20,7 +20,7 @@ class BinaryEncoder {
 
   explicit BinaryEncoder(std::vector<std::byte>& out) noexcept : out_(out) {}
 
-  /// `one`: the probability that the bit is 1, 1..65535. Returns the bit.
+  /// `one`: the probability of a 1, from 1 to 65535. Returns the bit.
   bool bit(std::uint32_t one, bool bit) {
     const auto bound = static_cast<std::uint32_t>(std::uint64_t{range_} * one >> kBitScale);
     if (bit) {
@@ -29,44 +29,45 @@ class BinaryEncoder {
       low_ += bound;
       range_ -= bound;
     }
-    while (range_ < kLeastRange) {
+    while (range_ < kMinRange) {
       range_ <<= 8;
       shift();
     }
     return bit;
   }
-  /// Bypass: the low `count` bits of `value` with probability 1/2 each, highest first.
-  std::uint32_t plain(unsigned count, std::uint32_t value) {
+  /// Bypass bits: the low `count` bits of `value`, each 0 or 1 with equal probability; highest
+  /// first.
+  std::uint32_t bypass(unsigned count, std::uint32_t value) {
     for (unsigned left = count; left > 0;) {
-      const unsigned step = left < kMaxPlainBits ? left : kMaxPlainBits;
+      const unsigned step = left < kMaxBypassBits ? left : kMaxBypassBits;
       left -= step;
       range_ >>= step;
       low_ += std::uint64_t{range_} * (value >> left & ((1U << step) - 1));
-      while (range_ < kLeastRange) {
+      while (range_ < kMinRange) {
         range_ <<= 8;
         shift();
       }
     }
     return value;
   }
-  /// Of the code values that decode to the same bits, writes the one with the most zero bytes at
-  /// its end, up to four, and drops these.
+  /// Of the numbers that decode to the same, the one with the most zero bytes at its end, up to
+  /// four: these are left out.
   void finish() {
-    constexpr std::uint64_t kLast = kLeastRange - 1, kAll = UINT32_MAX;
+    constexpr std::uint64_t kLast = kMinRange - 1, kAll = UINT32_MAX;
     const bool all = ((low_ + kAll) & ~kAll) < low_ + range_;
     low_ = all ? (low_ + kAll) & ~kAll : (low_ + kLast) & ~kLast;
     shift();
     if (!all) shift();
   }
-  /// Bytes of the output so far.
+  /// Of all bytes of the output so far.
   [[nodiscard]] std::size_t size() const noexcept { return out_.size(); }
 
  private:
-  /// Shifts out the highest byte. Bytes of 255 wait, since a carry may still pass through them.
+  /// Outputs the highest byte; bytes of 255 are held back, since a carry may pass through them.
   void shift() {
     if (low_ < 0xFF000000U || low_ >> 32 != 0) {
       const auto carry = static_cast<unsigned>(low_ >> 32);
-      // The very first byte is 0 and is dropped.
+      // The first byte of all is 0 and is left out.
       if (begun_) out_.push_back(static_cast<std::byte>(held_ + carry));
       for (; waiting_ > 0; --waiting_) out_.push_back(static_cast<std::byte>(255 + carry));
       begun_ = true;
@@ -85,7 +86,7 @@ class BinaryEncoder {
   bool begun_ = false;
 };
 
-/// Safe on hostile bytes. Behind the last byte it reads zeros, up to four; overrun() reports more.
+/// Safe on any bytes: after the last come zeros, up to four; overrun() is true after more.
 class BinaryDecoder {
  public:
   static constexpr bool kDecodes = true;
@@ -104,39 +105,39 @@ class BinaryDecoder {
       code_ -= bound;
       range_ -= bound;
     }
-    while (range_ < kLeastRange) {
+    while (range_ < kMinRange) {
       range_ <<= 8;
       take();
     }
     return bit;
   }
-  std::uint32_t plain(unsigned count, std::uint32_t = 0) noexcept {
+  std::uint32_t bypass(unsigned count, std::uint32_t = 0) noexcept {
     std::uint32_t value = 0;
     for (unsigned left = count; left > 0;) {
-      const unsigned step = left < kMaxPlainBits ? left : kMaxPlainBits;
+      const unsigned step = left < kMaxBypassBits ? left : kMaxBypassBits;
       left -= step;
       range_ >>= step;
-      // Only damaged streams exceed `step` bits.
+      // More only in damaged streams.
       std::uint32_t part = code_ / range_;
       if (part >> step != 0) part = (1U << step) - 1;
       code_ -= part * range_;
       value = value << step | part;
-      while (range_ < kLeastRange) {
+      while (range_ < kMinRange) {
         range_ <<= 8;
         take();
       }
     }
     return value;
   }
-  /// True if more was read than the input has.
+  /// More was read than there is.
   [[nodiscard]] bool overrun() const noexcept { return behind_ > kBinaryTail; }
-  /// True if all input was read, and it ends as an encoder ends it.
+  /// Everything was read, and ends as an encoder ends it.
   [[nodiscard]] bool ended() const noexcept {
     if (behind_ == kBinaryTail) return code_ < range_;
     if (next_ != end_ || behind_ != kBinaryTail - 1) return false;
-    // The encoder would have dropped this byte if a value with another zero byte existed.
+    // Not the lowest number, or one with another zero byte would do.
     const auto last = std::to_integer<std::uint64_t>(end_[-1]);
-    return code_ < kLeastRange && last != 0 && code_ + (256 - last) * kLeastRange >= range_;
+    return code_ < kMinRange && last != 0 && code_ + (256 - last) * kMinRange >= range_;
   }
 
  private:
@@ -153,7 +154,7 @@ class BinaryDecoder {
   const std::byte* next_;
   const std::byte* end_;
   std::uint32_t code_ = 0, range_ = UINT32_MAX;
-  unsigned behind_ = 0;  ///< zeros read behind the end, at most kBinaryTail + 1
+  unsigned behind_ = 0;  ///< zeros read after the end, counted up to one too many
 };
 
 }  // namespace gicodec

@@ -134,7 +134,7 @@ class RunModel {
       Counter& counter = digit_[kind][width][read];
       read = read << 1 | (bit(coder, counter, ((value + 1) >> left & 1) != 0) ? 1U : 0U);
     }
-    if (left > 0) read = read << left | coder.plain(left, (value + 1) & ((1U << left) - 1));
+    if (left > 0) read = read << left | coder.bypass(left, (value + 1) & ((1U << left) - 1));
     return read - 1;
   }
 

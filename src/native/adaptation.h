@@ -1,5 +1,5 @@
-// Fitting the static tables to a chunk: counts of what it holds, the sets that suit it, and
-// overrides of single members and contexts.
+// Fitting the static tables to a chunk: counts of its symbols, the sets that fit them, and
+// overrides of single distributions and contexts.
 #pragma once
 
 #include "base/memory.h"
@@ -11,36 +11,36 @@
 
 namespace gicodec::native {
 
-/// Departures from the set of one place, ascending (docs/native.md, "Overrides").
+/// Differences from the set of one place, ascending (docs/native.md, "Overrides").
 struct Overrides {
   struct Replaced {
     std::uint8_t number;
-    Member member;
+    Distribution distribution;
   };
   struct Moved {
-    std::uint8_t context, member;
+    std::uint8_t context, distribution;
   };
-  Vector<Replaced> members;
+  Vector<Replaced> distributions;
   Vector<Moved> contexts;
-  [[nodiscard]] bool empty() const { return members.empty() && contexts.empty(); }
+  [[nodiscard]] bool empty() const { return distributions.empty() && contexts.empty(); }
   void clear() {
-    members.clear();
+    distributions.clear();
     contexts.clear();
   }
 };
 
-/// Hit tables that a chunk brings along.
-struct OwnHits {
-  unsigned members = 0;  ///< 0: none
-  std::uint16_t end[kMembers][2];
-  std::uint8_t map[kHitContexts];
+/// Repeat tables that a chunk carries.
+struct OwnRepeats {
+  unsigned distributions = 0;  ///< 0: none
+  std::uint16_t end[kDistributions][2];
+  std::uint8_t map[kRepeatContexts];
 };
 
 /// The tables of a chunk, by place.
 struct TableChoice {
   std::uint8_t set[kPlaces] = {};
   std::array<Overrides, 3> overrides;
-  OwnHits hits;
+  OwnRepeats repeats;
   [[nodiscard]] bool overridden() const {
     return !overrides[0].empty() || !overrides[1].empty() || !overrides[2].empty();
   }
@@ -55,7 +55,7 @@ class AdaptedTables {
  private:
   Tables tables_{};
   Vector<RoleTables> role_;  // of residual places
-  HitTables hits_;
+  RepeatTables repeats_;
 };
 
 /// Counts of coded symbols by place and context.
@@ -63,12 +63,12 @@ class Histogram {
  public:
   void clear();
   void add(std::span<const Step> steps);
-  /// Chooses the sets that code the counts in least space; tells how many bytes that is.
+  /// Chooses the sets that code the counts in least space; returns how many bytes that is.
   std::uint64_t choose_sets(bool pairs, bool update, TableChoice& choice) const;
-  /// Chooses departures from the sets that pay. The counts stand for `scale` times as many symbols.
+  /// Chooses overrides that pay. The counts stand for `scale` times as many symbols.
   void choose_overrides(bool pairs, bool update, std::uint32_t scale, TableChoice& choice) const;
-  /// Hit tables of the counts, whether they pay or not.
-  void fit_hits(bool update, std::uint32_t scale, OwnHits& own) const;
+  /// Repeat tables of the counts, whether they pay or not.
+  void fit_repeats(bool update, std::uint32_t scale, OwnRepeats& own) const;
 
  private:
   struct Counts {
@@ -81,17 +81,17 @@ class Histogram {
     Vector<Counts> counts;
     Vector<std::uint16_t> seen;  // sums of counts
   };
-  using Hits = std::array<std::uint32_t, 3>;
+  using RepeatCounts = std::array<std::uint32_t, 3>;
   static std::uint32_t cost(const Counts& counts, const std::int16_t* price);
-  static std::uint64_t cost(const Hits& n, std::uint32_t end0, std::uint32_t end1);
+  static std::uint64_t cost(const RepeatCounts& n, std::uint32_t end0, std::uint32_t end1);
   [[nodiscard]] std::uint64_t cost_of(const Place& place, const RoleTables& tables) const;
   static void override_place(const Place& place, unsigned role, unsigned set, std::uint32_t scale,
                              Overrides& overrides);
-  void override_hits(const HitTables& set, std::uint32_t scale, OwnHits& own) const;
-  [[nodiscard]] std::uint64_t cost_of(const HitTables& tables) const;
+  void override_repeats(const RepeatTables& set, std::uint32_t scale, OwnRepeats& own) const;
+  [[nodiscard]] std::uint64_t cost_of(const RepeatTables& tables) const;
 
   std::array<Place, kPlaces> places_;
-  std::array<Hits, kHitContexts> hits_{};
+  std::array<RepeatCounts, kRepeatContexts> repeats_{};
 };
 
 }  // namespace gicodec::native

@@ -109,7 +109,7 @@ void Chunk::build(const Grid& grid, const Grid& box, std::span<const std::uint32
 
 void Chunk::build_flat(const Grid& grid, const Grid& box, std::span<const std::uint32_t> probes,
                        std::span<const std::uint32_t> positions, const MirrorView* mirror,
-                       bool past, unsigned lanes) {
+                       bool previous, unsigned lanes) {
   coded = static_cast<std::uint32_t>(positions.size());
   blocks.clear();
   for (const auto position : positions) {
@@ -117,7 +117,7 @@ void Chunk::build_flat(const Grid& grid, const Grid& box, std::span<const std::u
   }
   if (mirror != nullptr) {
     slot_.assign(std::size_t{box.x} * box.y * box.z, kNoBlock);
-    for (const auto position : past ? std::span<const std::uint32_t>() : positions) {
+    for (const auto position : previous ? std::span<const std::uint32_t>() : positions) {
       slot_[slot_of(box, place_in_box(grid, box, probes[position]))] = kUnknown;
     }
     find_neighbours(grid, box, mirror);

@@ -60,9 +60,9 @@ struct Chunk {
   void build(const Grid& grid, const Grid& box, std::span<const std::uint32_t> probes,
              std::span<const std::uint32_t> positions, const MirrorView* mirror, unsigned lanes);
   /// In the order given, in groups of `lanes`. Neighbours are those received, by their mirror
-  /// blocks alone, if there is a mirror; blocks of the update too, if they have a `past`.
+  /// blocks alone, if there is a mirror; blocks of the update too, if they have `previous` values.
   void build_flat(const Grid& grid, const Grid& box, std::span<const std::uint32_t> probes,
-                  std::span<const std::uint32_t> positions, const MirrorView* mirror, bool past,
+                  std::span<const std::uint32_t> positions, const MirrorView* mirror, bool previous,
                   unsigned lanes);
   /// Forms the groups anew.
   void form_groups(unsigned lanes);

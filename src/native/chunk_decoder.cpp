@@ -13,7 +13,7 @@ namespace {
 
 /// More than its texels that a modelled chunk may have (docs/native.md, section 4): bytes for each
 /// block, and beside those.
-constexpr std::size_t kMostPerBlock = 8, kMostMore = 80;
+constexpr std::size_t kMaxExtraPerBlock = 8, kMaxExtra = 80;
 
 Status decode_raw(const Update& u, std::span<const std::uint32_t> positions,
                   std::span<const std::byte> bytes, std::span<std::byte> texels) {
@@ -88,7 +88,7 @@ Status check_chunk(const TextureDesc& desc, const PlaneLayout& layout, bool upda
   const auto first = reader.fixed<std::uint8_t>();
   if (!reader.ok()) return reader.status();
   if (first == kRawChunk) {
-    // How many records exist is known to those who know the blocks.
+    // The number of records that exist depends on the blocks, which are not known here.
     const std::size_t size = reader.rest().size();
     if (desc.presence != Presence::all) {
       return size % desc.record.bytes == 0 ? Status::ok : Status::corrupt;
@@ -131,7 +131,7 @@ Status decode_chunk(const Update& u, std::span<const std::uint32_t> positions,
   if (status != Status::ok) return status;
   if (!enough_lanes(head.lanes, positions.size())) return Status::corrupt;
   const std::size_t most =
-      u.present_bytes(positions) + kMostPerBlock * positions.size() + kMostMore;
+      u.present_bytes(positions) + kMaxExtraPerBlock * positions.size() + kMaxExtra;
   if (bytes.size() > most) return Status::corrupt;
   if (!head.flat && !u.neighbours()) return Status::corrupt;
   const std::size_t size = reader.rest().size();

@@ -4,7 +4,7 @@
 
 namespace gicodec::native {
 
-/// What can be told of a chunk without its probes. `scratch` is overwritten.
+/// Checks what a chunk holds as far as that needs no probes. `scratch` is overwritten.
 Status check_chunk(const TextureDesc& desc, const PlaneLayout& layout, bool update,
                    std::span<const std::byte> bytes, ChunkHead& scratch);
 /// Decodes one chunk: the probes at `positions` of the update, into `texels` (the whole update's).

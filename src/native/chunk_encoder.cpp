@@ -11,10 +11,10 @@ namespace gicodec::native {
 namespace {
 
 /// Blocks up to which every one has a lane of its own, if it has so many bytes.
-constexpr std::size_t kFewBlocks = 64, kLeastOfLane = 128;
-/// Blocks that groups have on average, at least, in chunks that know new neighbours: those of
-/// updates know their past, too.
-constexpr std::size_t kLeastFilled = 6, kLeastFilledKey = 2;
+constexpr std::size_t kFewBlocks = 64, kMinLaneBytes = 128;
+/// Blocks that groups have on average, at least, in chunks with new values of neighbours: updates
+/// have previous values too.
+constexpr std::size_t kMinFilled = 6, kMinFilledKey = 2;
 /// Bytes below which tables of a chunk's own pay for nothing.
 constexpr std::uint64_t kFewBytes = 1024;
 
@@ -50,8 +50,8 @@ bool holds(const Update& u, const BlockPresence& presence, const std::uint16_t* 
   return true;
 }
 
-/// Whether many texels are those of a neighbouring block, bit for bit, but not those of the past:
-/// planes do not see that each on its own. Records of few bits cost little more without.
+/// Whether many texels equal those of a neighbouring block, but not the previous ones: planes
+/// cannot find that each on its own. Records of few bits cost little more without.
 bool repeats_pay(const Update& u, std::span<const std::uint32_t> positions,
                  const BlockTable& texels, Chunk& chunk) {
   constexpr std::size_t kLongRecord = 6, kWorth = 16;
@@ -69,10 +69,10 @@ bool repeats_pay(const Update& u, std::span<const std::uint32_t> positions,
   const std::uint32_t step = std::max(1U, chunk.coded / kSampled);
   for (std::uint32_t b = 0; b < chunk.coded; b += step) {
     const std::byte* const now = texels[chunk.blocks[b].position].data();
-    const std::byte* const past =
+    const std::byte* const previous =
         u.update ? u.mirror.blocks[chunk.blocks[b].probe].data() : nullptr;
     for (std::size_t at = 0; at < u.block_bytes(); at += size, ++seen) {
-      if (past != nullptr && std::memcmp(now + at, past + at, size) == 0) continue;
+      if (previous != nullptr && std::memcmp(now + at, previous + at, size) == 0) continue;
       const auto& around = chunk.blocks[b].neighbour;
       repeated += std::any_of(std::begin(around), std::end(around), [&](std::int32_t n) {
         return n != kNoBlock && std::memcmp(now + at, records(n) + at, size) == 0;
@@ -105,7 +105,7 @@ void find_constants(const Update& u, Workspace& w, ChunkHead& head) {
 }
 
 /// The most frequent pair of a sample.
-void find_cap(const Update& u, Workspace& w, ChunkHead& head) {
+void find_frequent(const Update& u, Workspace& w, ChunkHead& head) {
   struct Count {
     std::uint32_t pair, count;
   };
@@ -124,8 +124,8 @@ void find_cap(const Update& u, Workspace& w, ChunkHead& head) {
       if (c.count > best.count) best = c;
     }
   }
-  head.cap[0] = static_cast<std::uint16_t>(best.pair);
-  head.cap[1] = static_cast<std::uint16_t>(best.pair >> 16);
+  head.frequent[0] = static_cast<std::uint16_t>(best.pair);
+  head.frequent[1] = static_cast<std::uint16_t>(best.pair >> 16);
 }
 
 class ChunkEncoder {
@@ -203,7 +203,7 @@ class ChunkEncoder {
     const unsigned kinds = u_.layout.mode_kinds(u_.update);
     for (unsigned k = 0; k < kinds; ++k, ++next) {
       next->active = group.active;
-      next->hit = 0;
+      next->repeat = 0;
       next->place = kModePlace;
       const auto context = static_cast<std::uint16_t>(mode_context(u_.layout.pairs, u_.update, k));
       std::fill(std::begin(next->context), std::end(next->context), context);
@@ -236,7 +236,7 @@ class ChunkEncoder {
     if (settings_.strong || bytes_ > kFewBytes) {
       w_.histogram.choose_overrides(pairs, u_.update, scale, head_.tables);
     }
-    if (head_.repeats) w_.histogram.fit_hits(u_.update, scale, head_.tables.hits);
+    if (head_.repeats) w_.histogram.fit_repeats(u_.update, scale, head_.tables.repeats);
     return w_.adapted.apply(pairs, u_.update, head_.tables);
   }
 
@@ -279,7 +279,7 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
     return;
   }
   const auto worth =
-      static_cast<unsigned>(std::clamp<std::size_t>(raw_size / kLeastOfLane, 1, blocks));
+      static_cast<unsigned>(std::clamp<std::size_t>(raw_size / kMinLaneBytes, 1, blocks));
   const unsigned planned = few                 ? std::min(std::bit_ceil(worth), kLanes)
                            : settings.set >= 0 ? choose_lanes(blocks, 0)
                                                : kLanes;
@@ -288,8 +288,9 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
   head.repeats = settings.set < 0 && repeats_pay(u, positions, texels, w.chunk);
   head.flat = !head.repeats && choose_flat(u, settings, positions.size());
   w.prepare(u, positions, head.lanes, head.flat);
-  // In a line of blocks each waits for the one before, alone in its group; in a small box most do.
-  const std::size_t groups = w.chunk.groups(), least = u.update ? kLeastFilled : kLeastFilledKey;
+  // In a row of blocks each depends on the one before, and is alone in its group; in a small box
+  // most are.
+  const std::size_t groups = w.chunk.groups(), least = u.update ? kMinFilled : kMinFilledKey;
   if (!head.flat && !head.repeats && !settings.strong && least * groups > blocks) {
     head.flat = true;
     w.prepare(u, positions, head.lanes, head.flat);
@@ -298,7 +299,7 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
     u.unpack(texels[w.chunk.blocks[b].position].data(), w.current(b));
   }
   if (u.layout.pairs) {
-    find_cap(u, w, head);
+    find_frequent(u, w, head);
     head.coded = 3;
   } else {
     find_constants(u, w, head);

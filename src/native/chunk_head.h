@@ -15,29 +15,29 @@ inline constexpr std::uint8_t kAdaptiveChunk = 2;
 
 inline constexpr std::uint8_t kHasOverrides = 0x20;
 inline constexpr std::uint8_t kFlat = 0x40;
-inline constexpr std::uint8_t kHasHits = 0x80;
+inline constexpr std::uint8_t kHasRepeats = 0x80;
 
 /// Whether a chunk has symbols in that place that a static set is for.
 inline bool used_place(const PlaneLayout& layout, bool update, const ChunkHead& head,
                        unsigned place) {
   if (place == kModePlace) return !layout.pairs || update;
-  if (layout.pairs) return place != kHitPlace || head.tables.hits.members == 0;
+  if (layout.pairs) return place != kRepeatPlace || head.tables.repeats.distributions == 0;
   for (unsigned p = 0; p < layout.planes; ++p) {
     if ((head.coded >> p & 1) != 0 && place_of(p, layout.low) == place) return true;
   }
   return false;
 }
 
-inline void write_member(const Member& m, ByteWriter& writer) {
+inline void write_distribution(const Distribution& m, ByteWriter& writer) {
   const unsigned n = listed_symbols(m);
   writer.fixed(static_cast<std::uint16_t>(m.shift | m.unit << 3 | n << 6));
   for (unsigned s = 0; s < n; ++s) writer.fixed(m.units[s]);
   writer.fixed(m.units[kEscape]);
 }
-inline void read_member(ByteReader& reader, Member& m) {
-  const auto form = reader.fixed<std::uint16_t>();
-  const unsigned n = form >> 6;
-  m = {static_cast<std::uint8_t>(form >> 3 & 7), static_cast<std::uint8_t>(form & 7), {}};
+inline void read_distribution(ByteReader& reader, Distribution& m) {
+  const auto fields = reader.fixed<std::uint16_t>();
+  const unsigned n = fields >> 6;
+  m = {static_cast<std::uint8_t>(fields >> 3 & 7), static_cast<std::uint8_t>(fields & 7), {}};
   if (n > kEscape) return reader.fail(Status::corrupt);
   for (unsigned s = 0; s < n; ++s) m.units[s] = reader.fixed<std::uint8_t>();
   m.units[kEscape] = reader.fixed<std::uint8_t>();
@@ -45,26 +45,26 @@ inline void read_member(ByteReader& reader, Member& m) {
 }
 
 inline void write_overrides(const Overrides& overrides, ByteWriter& writer) {
-  writer.fixed(static_cast<std::uint8_t>(overrides.members.size()));
-  for (const auto& r : overrides.members) {
+  writer.fixed(static_cast<std::uint8_t>(overrides.distributions.size()));
+  for (const auto& r : overrides.distributions) {
     writer.fixed(r.number);
-    write_member(r.member, writer);
+    write_distribution(r.distribution, writer);
   }
   writer.fixed(static_cast<std::uint16_t>(overrides.contexts.size()));
   for (const auto& m : overrides.contexts) {
     writer.fixed(m.context);
-    writer.fixed(m.member);
+    writer.fixed(m.distribution);
   }
 }
 inline void read_overrides(ByteReader& reader, Overrides& overrides) {
-  const unsigned members = reader.fixed<std::uint8_t>();
-  if (members > kMembers) return reader.fail(Status::corrupt);
+  const unsigned distributions = reader.fixed<std::uint8_t>();
+  if (distributions > kDistributions) return reader.fail(Status::corrupt);
   unsigned next = 0;
-  for (unsigned i = 0; i < members && reader.ok(); ++i) {
+  for (unsigned i = 0; i < distributions && reader.ok(); ++i) {
     Overrides::Replaced r{reader.fixed<std::uint8_t>(), {}};
-    if (r.number < next || r.number >= kMembers) return reader.fail(Status::corrupt);
-    read_member(reader, r.member);
-    overrides.members.push_back(r);
+    if (r.number < next || r.number >= kDistributions) return reader.fail(Status::corrupt);
+    read_distribution(reader, r.distribution);
+    overrides.distributions.push_back(r);
     next = r.number + 1U;
   }
   const unsigned contexts = reader.fixed<std::uint16_t>();
@@ -72,37 +72,38 @@ inline void read_overrides(ByteReader& reader, Overrides& overrides) {
   next = 0;
   for (unsigned i = 0; i < contexts && reader.ok(); ++i) {
     const auto context = reader.fixed<std::uint8_t>();
-    const auto member = reader.fixed<std::uint8_t>();
-    if (context < next || member >= kMembers) return reader.fail(Status::corrupt);
-    overrides.contexts.push_back({context, member});
+    const auto distribution = reader.fixed<std::uint8_t>();
+    if (context < next || distribution >= kDistributions) return reader.fail(Status::corrupt);
+    overrides.contexts.push_back({context, distribution});
     next = context + 1U;
   }
 }
 
-inline void write_hits(const OwnHits& hits, ByteWriter& writer) {
-  writer.fixed(static_cast<std::uint8_t>(hits.members));
-  for (unsigned m = 0; m < hits.members; ++m) {
-    for (const auto end : hits.end[m]) writer.fixed(end);
+inline void write_repeat_tables(const OwnRepeats& repeats, ByteWriter& writer) {
+  writer.fixed(static_cast<std::uint8_t>(repeats.distributions));
+  for (unsigned m = 0; m < repeats.distributions; ++m) {
+    for (const auto end : repeats.end[m]) writer.fixed(end);
   }
-  for (unsigned c = 0; c < kHitContexts; c += 2) {
-    writer.fixed(static_cast<std::uint8_t>(hits.map[c] | hits.map[c + 1] << 4));
+  for (unsigned c = 0; c < kRepeatContexts; c += 2) {
+    writer.fixed(static_cast<std::uint8_t>(repeats.map[c] | repeats.map[c + 1] << 4));
   }
 }
-inline void read_hits(ByteReader& reader, OwnHits& hits) {
-  hits.members = reader.fixed<std::uint8_t>();
-  if (hits.members < 1 || hits.members > kMembers) return reader.fail(Status::corrupt);
-  for (unsigned m = 0; m < hits.members; ++m) {
-    for (auto& end : hits.end[m]) end = reader.fixed<std::uint16_t>();
-    const auto& [end0, end1] = hits.end[m];
+inline void read_repeat_tables(ByteReader& reader, OwnRepeats& repeats) {
+  repeats.distributions = reader.fixed<std::uint8_t>();
+  if (repeats.distributions < 1 || repeats.distributions > kDistributions)
+    return reader.fail(Status::corrupt);
+  for (unsigned m = 0; m < repeats.distributions; ++m) {
+    for (auto& end : repeats.end[m]) end = reader.fixed<std::uint16_t>();
+    const auto& [end0, end1] = repeats.end[m];
     if (end0 == 0 || end0 >= end1 || end1 >= kProbabilityScale) {
       return reader.fail(Status::corrupt);
     }
   }
-  for (unsigned c = 0; c < kHitContexts; c += 2) {
+  for (unsigned c = 0; c < kRepeatContexts; c += 2) {
     const auto both = reader.fixed<std::uint8_t>();
-    hits.map[c] = both & 15;
-    hits.map[c + 1] = both >> 4;
-    if (hits.map[c] >= hits.members || hits.map[c + 1] >= hits.members) {
+    repeats.map[c] = both & 15;
+    repeats.map[c + 1] = both >> 4;
+    if (repeats.map[c] >= repeats.distributions || repeats.map[c + 1] >= repeats.distributions) {
       return reader.fail(Status::corrupt);
     }
   }
@@ -112,14 +113,15 @@ inline void write_head(const PlaneLayout& layout, const ChunkHead& head,
                        std::vector<std::byte>& out) {
   const TableChoice& tables = head.tables;
   ByteWriter writer(out);
-  writer.fixed(static_cast<std::uint8_t>(
-      kModelledChunk | std::countr_zero(head.lanes) << 2 | (head.flat ? kFlat : 0) |
-      (tables.overridden() ? kHasOverrides : 0) | (tables.hits.members > 0 ? kHasHits : 0)));
+  writer.fixed(static_cast<std::uint8_t>(kModelledChunk | std::countr_zero(head.lanes) << 2 |
+                                         (head.flat ? kFlat : 0) |
+                                         (tables.overridden() ? kHasOverrides : 0) |
+                                         (tables.repeats.distributions > 0 ? kHasRepeats : 0)));
   for (unsigned p = 0; p < kPlaces; p += 2) {
     writer.fixed(static_cast<std::uint8_t>(tables.set[p] | tables.set[p + 1] << 4));
   }
   if (layout.pairs) {
-    for (const auto cap : head.cap) writer.fixed(cap);
+    for (const auto frequent : head.frequent) writer.fixed(frequent);
   } else {
     for (unsigned p = 0; p < layout.planes; p += 8) {
       writer.fixed(static_cast<std::uint8_t>(head.coded >> p));
@@ -128,7 +130,7 @@ inline void write_head(const PlaneLayout& layout, const ChunkHead& head,
       if ((head.coded >> p & 1) == 0) writer.fixed(head.constant[p]);
     }
   }
-  if (tables.hits.members > 0) write_hits(tables.hits, writer);
+  if (tables.repeats.distributions > 0) write_repeat_tables(tables.repeats, writer);
   if (!tables.overridden()) return;
   for (unsigned p = 0; p < residual_places(layout.pairs); ++p) {
     write_overrides(tables.overrides[p], writer);
@@ -157,13 +159,13 @@ inline void read_planes(const PlaneLayout& layout, ByteReader& reader, ChunkHead
   }
 }
 
-/// The tables that a chunk brings along.
+/// The tables that a chunk carries.
 inline void read_tables(const PlaneLayout& layout, std::uint8_t first, ByteReader& reader,
                         TableChoice& tables) {
   for (auto& o : tables.overrides) o.clear();
-  tables.hits.members = 0;
-  if ((first & kHasHits) != 0) {
-    read_hits(reader, tables.hits);
+  tables.repeats.distributions = 0;
+  if ((first & kHasRepeats) != 0) {
+    read_repeat_tables(reader, tables.repeats);
   }
   if ((first & kHasOverrides) == 0) return;
   for (unsigned p = 0; p < residual_places(layout.pairs) && reader.ok(); ++p) {
@@ -171,7 +173,7 @@ inline void read_tables(const PlaneLayout& layout, std::uint8_t first, ByteReade
   }
 }
 
-/// `first` is the byte that said kModelledChunk. Tells how many bytes the tables take.
+/// `first` is the chunk's first byte, of kModelledChunk. Returns how many bytes the tables take.
 inline std::size_t read_head(const PlaneLayout& layout, bool update, std::uint8_t first,
                              ByteReader& reader, ChunkHead& head) {
   const unsigned log2_lanes = first >> 2 & 7;
@@ -180,14 +182,14 @@ inline std::size_t read_head(const PlaneLayout& layout, bool update, std::uint8_
   if (log2_lanes > 5) reader.fail(Status::corrupt);
   read_sets(reader, head.tables);
   if (layout.pairs) {
-    for (auto& cap : head.cap) cap = reader.fixed<std::uint16_t>();
+    for (auto& frequent : head.frequent) frequent = reader.fixed<std::uint16_t>();
     head.coded = 3;
   } else {
     read_planes(layout, reader, head);
   }
   const std::size_t before = reader.rest().size();
   read_tables(layout, first, reader, head.tables);
-  head.repeats = !layout.pairs && head.tables.hits.members > 0;
+  head.repeats = !layout.pairs && head.tables.repeats.distributions > 0;
   if (head.repeats && (head.flat || layout.partial || layout.shared)) reader.fail(Status::corrupt);
   for (unsigned p = 0; p < kPlaces && reader.ok(); ++p) {
     if (head.tables.set[p] >= (used_place(layout, update, head, p) ? kSets : 1)) {

@@ -62,31 +62,31 @@ GICODEC_INLINE I16 apply_cross(const Weights& k, I16 e0) {
   return shift_arithmetic<2>(add(mul_lo(e0, k.cross), set(2)));
 }
 
-/// What the residuals around say about the next one.
-struct Local {
+/// The context of a residual by those around.
+struct LocalContext {
   I16 energy;  ///< 2|W| + 2|N| + |NW| + |NE|
   I16 sign;    ///< sign part of the context
-  I16 lead;    ///< where it is negative the residual is coded with its sign inverted
+  I16 flip;    ///< where it is negative the residual is coded with its sign inverted
 };
-GICODEC_INLINE Local look_around(const Four& e) {
+GICODEC_INLINE LocalContext local_context(const Four& e) {
   const I16 aw = magnitude(e.w), an = magnitude(e.n);
   const I16 near = add_sat(aw, an);
-  Local local;
+  LocalContext local;
   local.energy = add_sat(add_sat(near, near), add_sat(magnitude(e.nw), magnitude(e.ne)));
   const I16 zero = set(0);
   const M16 no_w = equal(e.w, zero), no_n = equal(e.n, zero);
-  local.lead = select(no_w, e.n, e.w);
+  local.flip = select(no_w, e.n, e.w);
   const I16 both = select(greater(zero, bit_xor(e.w, e.n)), set(3 * kSignStep), set(2 * kSignStep));
   local.sign = select(mask_or(no_w, no_n), set(kSignStep), both);
   local.sign = select(mask_and(no_w, no_n), zero, local.sign);
   return local;
 }
 GICODEC_INLINE I16 sign_of(I16 a) { return max_s(min_s(a, set(1)), set(-1)); }
-/// Noise moves all planes of a texel alike: what their signs (`votes`, -2..2) and those of the
-/// residuals around say together, in lanes of `follows`.
-GICODEC_INLINE void follow(M16 follows, I16 votes, const Four& e, Local& local, I16& size) {
+/// Noise changes all planes of a texel in one direction: flip and context by the signs of earlier
+/// planes (`votes`, -2..2) and of the residuals around, in lanes of `follows`.
+GICODEC_INLINE void follow(M16 follows, I16 votes, const Four& e, LocalContext& local, I16& size) {
   const I16 both = add(add(add(votes, votes), votes), sign_of(add(e.w, e.n)));
-  local.lead = select(follows, both, local.lead);
+  local.flip = select(follows, both, local.flip);
   local.sign = select(follows, shift_left<3>(magnitude(both)), local.sign);
   size = select(follows, min_u(size, set(7)), size);
 }
@@ -110,28 +110,28 @@ GICODEC_INLINE I16 magnitude_class(I16 s, const MagnitudeTables& t) {
 }
 
 /// Residual ↔ coded value: sign inverted where `lead` is negative, then zigzag.
-GICODEC_INLINE I16 fold(I16 lead, I16 a) {
-  const I16 inverts = shift_arithmetic<15>(lead);
+GICODEC_INLINE I16 fold(I16 flip, I16 a) {
+  const I16 inverts = shift_arithmetic<15>(flip);
   return sub(bit_xor(a, inverts), inverts);
 }
-GICODEC_INLINE I16 to_value(I16 e, I16 lead) {
-  const I16 f = fold(lead, e);
+GICODEC_INLINE I16 to_value(I16 e, I16 flip) {
+  const I16 f = fold(flip, e);
   return bit_xor(shift_left<1>(f), shift_arithmetic<15>(f));
 }
-GICODEC_INLINE I16 from_value(I16 u, I16 lead) {
+GICODEC_INLINE I16 from_value(I16 u, I16 flip) {
   const I16 f = bit_xor(shift_right<1>(u), sub(set(0), bit_and(u, set(1))));
-  return fold(lead, f);
+  return fold(flip, f);
 }
 
-/// The two directions. A coder is asked for the residual of every active lane: the forward one is
-/// told it and notes a step, the inverse one reads it.
+/// The two directions. A coder returns the residual of every active lane: the forward one gets it
+/// and appends a step, the inverse one reads it.
 struct Modeller {
   Step* next;
   bool ok() const { return true; }
-  GICODEC_INLINE void note(I16 context, std::uint32_t active, bool hit, unsigned place,
+  GICODEC_INLINE void note(I16 context, std::uint32_t active, bool repeat, unsigned place,
                            unsigned plane, I16 value) {
     next->active = active;
-    next->hit = hit ? 1 : 0;
+    next->repeat = repeat ? 1 : 0;
     next->place = static_cast<std::uint16_t>(place);
     next->plane = static_cast<std::uint16_t>(plane);
     store(next->context, context);
@@ -139,32 +139,32 @@ struct Modeller {
     ++next;
   }
   GICODEC_INLINE I16 token(unsigned place, unsigned plane, I16 context, std::uint32_t active,
-                           I16 lead, I16 residual) {
-    note(context, active, false, place, plane, to_value(residual, lead));
+                           I16 flip, I16 residual) {
+    note(context, active, false, place, plane, to_value(residual, flip));
     return residual;
   }
-  GICODEC_INLINE I16 hit(I16 context, std::uint32_t active, I16 symbol) {
-    note(context, active, true, kHitPlace, 0, symbol);
+  GICODEC_INLINE I16 repeat(I16 context, std::uint32_t active, I16 symbol) {
+    note(context, active, true, kRepeatPlace, 0, symbol);
     return symbol;
   }
 };
 struct Reader {
   const Tables& tables;
   Input& in;
-  bool ok() const { return sound(in); }
-  GICODEC_INLINE I16 token(unsigned place, unsigned, I16 context, std::uint32_t active, I16 lead,
+  bool ok() const { return in_bounds(in); }
+  GICODEC_INLINE I16 token(unsigned place, unsigned, I16 context, std::uint32_t active, I16 flip,
                            I16) {
-    return from_value(decode_tokens(*tables.role[place], context, active, in), lead);
+    return from_value(decode_tokens(*tables.role[place], context, active, in), flip);
   }
-  GICODEC_INLINE I16 hit(I16 context, std::uint32_t active, I16) {
-    return decode_hits(*tables.hits, context, active, in);
+  GICODEC_INLINE I16 repeat(I16 context, std::uint32_t active, I16) {
+    return decode_repeats(*tables.repeats, context, active, in);
   }
 };
 /// Class part of every lane's contexts.
 GICODEC_INLINE I16 lane_classes(const Mode* modes, const std::uint16_t* choice) {
   alignas(64) std::uint16_t v[kLanes];
   for (unsigned l = 0; l < kLanes; ++l) {
-    v[l] = static_cast<std::uint16_t>(modes[choice[l] & (kModes - 1)].klass * kClassStep);
+    v[l] = static_cast<std::uint16_t>(modes[choice[l] & (kModes - 1)].context_class * kClassStep);
   }
   return load(v);
 }

@@ -1,7 +1,7 @@
 // Entropy coding of a step: rANS in lockstep, one state per lane, one word stream.
 
 /// After reading: whether the input was long enough.
-GICODEC_INLINE bool sound(const Input& in) { return in.next <= in.end; }
+GICODEC_INLINE bool in_bounds(const Input& in) { return in.next <= in.end; }
 
 /// States of all lanes, as the words that they consist of.
 struct States {
@@ -59,14 +59,14 @@ GICODEC_INLINE I16 decode_token_lanes(const RoleTables& tables, I16 contexts, st
   std::uint32_t asking = 0;
   for (std::uint32_t rest = active; rest != 0; rest &= rest - 1) {
     const int l = __builtin_ctz(rest);
-    const unsigned member = tables.map[value[l]];
+    const unsigned distribution = tables.map[value[l]];
     std::uint32_t x = in.low[l] | static_cast<std::uint32_t>(in.high[l]) << 16;
     const std::uint32_t slot = x % kProbabilityScale;
-    const std::uint32_t units = slot * tables.per16[member] >> 4;
-    const unsigned symbol = tables.symbol[member][units < 255 ? units : 255];
-    const std::uint32_t code = tables.by_symbol[member][symbol];
+    const std::uint32_t units = slot * tables.per16[distribution] >> 4;
+    const unsigned symbol = tables.symbol[distribution][units < 255 ? units : 255];
+    const std::uint32_t code = tables.by_symbol[distribution][symbol];
     x = (code >> 12 & 0xFFF) * (x >> kProbabilityBits) + slot - (code & 0xFFF);
-    value[l] = tables.base[member][symbol];
+    value[l] = tables.base[distribution][symbol];
     bits[l] = static_cast<std::uint8_t>(code >> 24);
     asking |= static_cast<std::uint32_t>(bits[l] != 0) << l;
     take_word(x, in);
@@ -84,7 +84,7 @@ GICODEC_INLINE I16 decode_token_lanes(const RoleTables& tables, I16 contexts, st
   }
   return load(value);
 }
-/// One token step and the raw bits it asks for. Values of inactive lanes are unspecified.
+/// One token step and its raw bits. Values of inactive lanes are unspecified.
 GICODEC_INLINE I16 decode_tokens(const RoleTables& tables, I16 context, std::uint32_t active,
                                  Input& in) {
   if constexpr (!kByteLookups) return decode_token_lanes(tables, context, active, in);
@@ -141,33 +141,33 @@ GICODEC_INLINE void encode_tokens(const Step& step, const RoleTables& tables, Ou
   store(out.state, put(x, frequency, bit_and(code, low), step.active, out));
 }
 
-struct HitEnds {
+struct RepeatEnds {
   I16 end0, end1;
 };
-GICODEC_INLINE HitEnds find_ends(const HitTables& t, I16 context) {
+GICODEC_INLINE RepeatEnds find_ends(const RepeatTables& t, I16 context) {
   if constexpr (!kByteLookups) {
     alignas(64) std::uint16_t contexts[kLanes], end[2][kLanes];
     store(contexts, context);
     for (unsigned l = 0; l < kLanes; ++l) {
       for (unsigned k = 0; k < 2; ++k) {
-        end[k][l] = static_cast<std::uint16_t>(t.end(k, contexts[l] % kHitContexts));
+        end[k][l] = static_cast<std::uint16_t>(t.end(k, contexts[l] % kRepeatContexts));
       }
     }
     return {load(end[0]), load(end[1])};
   }
-  const B8 member = lookup64(t.map, bytes(context));
+  const B8 distribution = lookup64(t.map, bytes(context));
   const auto end = [&](unsigned k) {
-    return bit_or(words(lookup16(t.low[k], member)),
-                  shift_left<8>(words(lookup16(t.high[k], member))));
+    return bit_or(words(lookup16(t.low[k], distribution)),
+                  shift_left<8>(words(lookup16(t.high[k], distribution))));
   };
   return {end(0), end(1)};
 }
 
-/// Hit symbols 0, 1, 2 by comparing with the ends of the first two.
-GICODEC_INLINE I16 decode_hits(const HitTables& tables, I16 context, std::uint32_t active,
-                               Input& in) {
+/// Repeat symbols 0, 1, 2 by comparing with the ends of the first two.
+GICODEC_INLINE I16 decode_repeats(const RepeatTables& tables, I16 context, std::uint32_t active,
+                                  Input& in) {
   States x = load_states(in);
-  const HitEnds ends = find_ends(tables, context);
+  const RepeatEnds ends = find_ends(tables, context);
   const I16 slot = slot_of(x);
   const M16 in0 = greater(ends.end0, slot);
   const M16 in01 = greater(ends.end1, slot);
@@ -179,8 +179,8 @@ GICODEC_INLINE I16 decode_hits(const HitTables& tables, I16 context, std::uint32
   return select(in0, set(0), select(in01, set(1), set(2)));
 }
 
-GICODEC_INLINE void encode_hits(const Step& step, const HitTables& tables, Output& out) {
-  const HitEnds ends = find_ends(tables, load(step.context));
+GICODEC_INLINE void encode_repeats(const Step& step, const RepeatTables& tables, Output& out) {
+  const RepeatEnds ends = find_ends(tables, load(step.context));
   const I16 value = load(step.value);
   const M16 is0 = equal(value, set(0));
   const M16 is1 = equal(value, set(1));
@@ -194,13 +194,13 @@ GICODEC_INLINE void encode_hits(const Step& step, const HitTables& tables, Outpu
 bool decode_values(const RoleTables& tables, std::uint32_t active, std::uint16_t context, Input& in,
                    std::uint16_t* values) {
   store(values, decode_tokens(tables, set(context), active, in));
-  return sound(in);
+  return in_bounds(in);
 }
 
 void price_steps(const Step* begin, const Step* end, unsigned place, const RoleTables& tables,
                  std::uint32_t* cost) {
   for (const Step* s = begin; s != end; ++s) {
-    if (s->hit != 0 || s->place != place) continue;
+    if (s->repeat != 0 || s->place != place) continue;
     for (std::uint32_t rest = s->active; rest != 0; rest &= rest - 1) {
       const int l = __builtin_ctz(rest);
       cost[l] += static_cast<std::uint32_t>(
@@ -212,8 +212,8 @@ void price_steps(const Step* begin, const Step* end, unsigned place, const RoleT
 void encode_steps(const Step* begin, const Step* end, const Tables& tables, Output& out) {
   while (end != begin) {
     --end;
-    if (end->hit != 0) {
-      encode_hits(*end, *tables.hits, out);
+    if (end->repeat != 0) {
+      encode_repeats(*end, *tables.repeats, out);
     } else {
       encode_tokens(*end, *tables.role[end->place], out);
     }

@@ -49,15 +49,15 @@ GICODEC_INLINE void estimate_modes(const CostJob& job, std::uint16_t (*costs)[kL
   for (unsigned m = 0; m < job.count; ++m) {
     const Mode& mode = job.modes[m];
     const Weights weights = uniform_weights(mode, kWide);
-    const bool plain = mode.w == 0 && mode.n == 0 && mode.nw == 0 && mode.ne == 0;
-    // Steps of noise: all planes move by about 1, and follow() tells their signs.
-    const bool follows = plain && !kWide && mode.klass == kFollowClass;
+    const bool no_operator = mode.w == 0 && mode.n == 0 && mode.nw == 0 && mode.ne == 0;
+    // Steps of noise: all planes change by about 1, and follow() predicts their signs.
+    const bool follows = no_operator && !kWide && mode.context_class == kFollowClass;
     I16 total = set(0), moved = set(0);
     for (unsigned p = 0; p < job.planes; ++p) {
       const std::uint16_t* at = differences + p * span + std::size_t{margin} * kLanes;
       for (unsigned t = 0; t < texels; ++t, at += kLanes) {
         I16 e = load(at);
-        if (!plain) {
+        if (!no_operator) {
           const Four f = {load(at - kLanes), load(at - row), load(at - row - kLanes),
                           load(at - row + kLanes)};
           e = sub(e, kWide ? apply_wide(weights, f) : apply_narrow(weights, f));

@@ -34,10 +34,10 @@ struct Output {
 
 /// The symbols that all lanes code at once, in decoding order.
 struct Step {
-  alignas(64) std::uint16_t context[kLanes];  ///< of the role in that place, or of a hit
+  alignas(64) std::uint16_t context[kLanes];  ///< of the role in that place, or of a repeat
   alignas(64) std::uint16_t value[kLanes];
   std::uint32_t active;  ///< lanes that take part, by bit
-  std::uint16_t hit;     ///< 1: the value is a hit symbol, 0: it is a token value
+  std::uint16_t repeat;  ///< 1: the value is a repeat symbol, 0: it is a token value
   std::uint16_t place;
   std::uint16_t plane;  ///< of a residual
 };
@@ -58,13 +58,14 @@ struct Group {
   std::uint32_t coded;  ///< planes that are coded, by bit; the others are constant
   std::uint32_t low;    ///< planes that are low halves of components, by bit
   bool shared;          ///< planes: the last one is the exponent of all others
-  bool repeats;         ///< planes: each texel says first which candidate it repeats
+  bool repeats;         ///< planes: each texel begins with the candidate that it repeats
   alignas(64) std::uint16_t mode[2][kLanes];  ///< planes use the first row only
-  std::uint16_t cap[2];
+  std::uint16_t frequent[2];
   const std::uint16_t* reference;  ///< [plane][texel][lane]; keyframes of pairs: unused
-  const std::uint16_t* candidate[kBlockCandidates];  ///< past, X, Y, Z: of pairs, and for repeats
-  std::uint16_t* current;                            ///< decoding writes, encoding reads
-  std::uint16_t* scratch;                            ///< scratch_size() values
+  const std::uint16_t*
+      candidate[kBlockCandidates];  ///< previous, X, Y, Z: of pairs, and for repeats
+  std::uint16_t* current;           ///< decoding writes, encoding reads
+  std::uint16_t* scratch;           ///< scratch_size() values
 };
 /// Values of Group::scratch: differences and residuals of every plane, what was repeated and which
 /// candidate that was, shared exponents and five scales; or of both planes and every keyframe mode
@@ -81,17 +82,17 @@ struct CostJob {
   const Present* present;  ///< as the group's
   std::size_t texels;      ///< of the whole block
   unsigned width, planes;
-  unsigned first_row, rows;  ///< those looked at; the row above is read too
+  unsigned first_row, rows;  ///< the sampled ones; the row above is read too
   bool scaled;               ///< the last plane is the exponent of all others
   bool wide;                 ///< 16-bit arithmetic of pairs and deep planes
   const Mode* modes;
   unsigned count;
   std::uint16_t* scratch;  ///< cost_scratch_size() values
 };
-/// Texels that a job looks at, at most, unless one row has more.
-inline constexpr unsigned kMostSampled = 64;
+/// Texels that a job samples, at most, unless one row has more.
+inline constexpr unsigned kMaxSampled = 64;
 constexpr std::size_t cost_scratch_size(unsigned width, unsigned planes) {
-  const std::size_t texels = width < kMostSampled ? kMostSampled : width;
+  const std::size_t texels = width < kMaxSampled ? kMaxSampled : width;
   return (planes + 1) * (texels + width + 1) * kLanes;
 }
 

@@ -21,13 +21,13 @@ bool same_reference(const Mode& a, const Mode& b) {
 /// What sends a mode costs on top, in 1/16 bits: enough to prefer the first among equals.
 constexpr std::uint32_t kModeCost = 4;
 
-/// Texels that an estimate looks at, in whole rows, where it decides.
+/// Texels that an estimate samples, in whole rows, where it decides.
 constexpr unsigned kSampled = 24;
-/// Where it ranks modes whose exact cost is looked at: those texels, and the number of modes.
+/// Where it ranks modes for the exact search: those texels, and the number of modes.
 struct Search {
   unsigned sampled, tries;
 };
-constexpr Search kPlaneSearch = {32, 3}, kPairSearch = {kMostSampled, 2};
+constexpr Search kPlaneSearch = {32, 3}, kPairSearch = {kMaxSampled, 2};
 const Search& search_of(const Update& u) { return u.layout.pairs ? kPairSearch : kPlaneSearch; }
 
 using LaneKnown = std::array<Known, kLanes>;
@@ -49,7 +49,7 @@ void estimate(const Update& u, unsigned sampled, unsigned kind, unsigned first, 
   const unsigned rows = std::clamp(sampled / width, 1U, u.rows());
   // Counted records are the first ones.
   const unsigned first_row = u.desc.presence == Presence::count ? 0 : (u.rows() - rows + 1) / 2;
-  // The row above is looked at too.
+  // The row above is read too.
   const std::size_t from = first_row == 0 ? 0 : (first_row - 1) * width;
   const std::size_t part = (first_row + rows) * width - from;
   // Planes in one go where little lies between their parts.
@@ -104,7 +104,7 @@ void choose_modes(const Update& u, std::size_t g, Group& group, Workspace& w,
   if (u.layout.pairs && !u.update) return;
   const LaneKnown known = known_in_lanes(u, g, w);
   // Where not all exist, as few again.
-  const unsigned sampled = group.present != nullptr ? kMostSampled
+  const unsigned sampled = group.present != nullptr ? kMaxSampled
                            : estimates != nullptr   ? search_of(u).sampled
                                                     : kSampled;
   Estimates own;
@@ -138,7 +138,7 @@ void choose_modes_exactly(const Update& u, std::size_t g, const Tables& tables, 
   if (u.layout.pairs && !u.update) return;
   Estimates estimates[2];
   choose_modes(u, g, group, w, estimates);
-  // One kind after the other: the second plane's contexts see the first one's residuals.
+  // One kind after the other: the second plane's contexts depend on the first one's residuals.
   for (unsigned kind = 0; kind < kinds_of(u); ++kind) {
     std::array<std::array<std::uint16_t, kModes>, kLanes> ranking;
     for (unsigned l = 0; l < kLanes; ++l) {

@@ -20,10 +20,10 @@ inline constexpr unsigned kProbabilityBits = 12;
 inline constexpr std::uint32_t kProbabilityScale = 1U << kProbabilityBits;
 using gicodec::kStateLow;
 
-// Symbols of values, shifted down by the member's shift: 15 is 0, then come 1, 2, … 7, ranges, and
-// an escape that holds any value.
+// Symbols of values, shifted down by the distribution's shift: 15 is 0, then come 1, 2, … 7,
+// ranges, and an escape that holds any value.
 inline constexpr unsigned kSymbols = 16;
-inline constexpr unsigned kListed = kSymbols - 1;  ///< those that a member gives units
+inline constexpr unsigned kListed = kSymbols - 1;  ///< those that a distribution gives units
 inline constexpr unsigned kEscape = 14;
 inline constexpr unsigned kZero = 15;
 inline constexpr std::uint8_t kBase[kSymbols] = {1,  2,  3,  4,  5,  6,   7, 8,
@@ -49,26 +49,27 @@ constexpr unsigned raw_bits_of(unsigned symbol, unsigned shift) {
 inline constexpr unsigned kClassStep = 64, kSignStep = 16;
 /// Class of update modes whose later high planes follow the signs of those before.
 inline constexpr unsigned kFollowClass = 3;
-inline constexpr unsigned kContexts = 256;              ///< of a role
-inline constexpr unsigned kFirstTexel = 15;             ///< magnitude at the first texel of plane 0
-inline constexpr unsigned kMembers = 16;                ///< distributions of a role in a set
-inline constexpr unsigned kSets = 8;                    ///< static tables that a role chooses from
-inline constexpr unsigned kMaxShift = 7, kMaxUnit = 4;  ///< of a member; its unit as a logarithm
-inline constexpr unsigned kHitContexts = 64;            ///< 11 scores × 5 votes, padded
+inline constexpr unsigned kContexts = 256;      ///< of a role
+inline constexpr unsigned kFirstTexel = 15;     ///< magnitude at the first texel of plane 0
+inline constexpr unsigned kDistributions = 16;  ///< distributions of a role in a set
+inline constexpr unsigned kSets = 8;            ///< static tables that a role chooses from
+inline constexpr unsigned kMaxShift = 7,
+                          kMaxUnit = 4;          ///< of a distribution; its unit as a logarithm
+inline constexpr unsigned kRepeatContexts = 64;  ///< 11 scores × 5 votes, padded
 
 inline constexpr unsigned kModeRole = 10, kRoles = 11;
 constexpr unsigned role_of(bool pairs, bool update, unsigned plane) {
   return pairs ? 6 + (update ? 2U : 0U) + plane : (update ? 3U : 0U) + (plane < 2 ? plane : 2U);
 }
-/// Places of a chunk's roles: planes 0, 1 and others, hits of pairs, modes.
-inline constexpr unsigned kPlaces = 4, kHitPlace = 2, kModePlace = 3;
+/// Places of a chunk's roles: planes 0, 1 and others, repeats of pairs, modes.
+inline constexpr unsigned kPlaces = 4, kRepeatPlace = 2, kModePlace = 3;
 /// `low`: planes that are low halves, by bit; where there are any, the second place is theirs.
 constexpr unsigned place_of(unsigned plane, std::uint32_t low) {
   if (plane == 0) return 0;
   if (low != 0) return (low >> plane & 1) != 0 ? 1 : 2;
   return plane < 2 ? plane : 2;
 }
-/// What a texel may repeat: past, X, Y, Z.
+/// Blocks whose texels may be repeated: previous, X, Y, Z.
 inline constexpr unsigned kBlockCandidates = 4;
 /// Those with residuals.
 constexpr unsigned residual_places(bool pairs) { return pairs ? 2 : 3; }
@@ -80,10 +81,10 @@ constexpr unsigned mode_context(bool pairs, bool update, unsigned plane) {
 /// What a block is predicted from.
 enum class Reference : std::uint8_t {
   constant,    ///< planes: half of the range; pairs: 0
-  cap,         ///< pairs: the chunk's cap value
-  past,        ///< the block in the mirror
+  frequent,    ///< pairs: the chunk's frequent value
+  previous,    ///< the block in the mirror
   neighbours,  ///< average of the neighbours' current blocks
-  change,      ///< past plus the average change of the neighbours
+  change,      ///< previous plus the average change of the neighbours
 };
 inline constexpr std::uint8_t kX = 1, kY = 2, kZ = 4;
 
@@ -94,14 +95,14 @@ struct Mode {
   std::uint8_t neighbours;  ///< kX | kY | kZ
   std::int8_t w, n, nw, ne;
   std::uint8_t cross;
-  std::uint8_t klass = 0;
+  std::uint8_t context_class = 0;
 };
 
 inline constexpr Mode kPlaneUpdateModes[kModes] = {
-    {Reference::past, 0, 4, 2, 0, 2, 3, 0}, {Reference::past, 0, 2, 2, 0, 0, 0, 1},
-    {Reference::past, 0, 4, 2, 0, 2, 0, 1}, {Reference::past, 0, 6, 6, -4, 0, 4, 2},
-    {Reference::past, 0, 0, 0, 0, 0, 0, 3}, {Reference::past, 0, 4, 0, 0, 4, 4, 0},
-    {Reference::past, 0, 2, 2, 0, 0, 4, 0}, {Reference::change, kX | kZ, 0, 0, 0, 0, 0, 3},
+    {Reference::previous, 0, 4, 2, 0, 2, 3, 0}, {Reference::previous, 0, 2, 2, 0, 0, 0, 1},
+    {Reference::previous, 0, 4, 2, 0, 2, 0, 1}, {Reference::previous, 0, 6, 6, -4, 0, 4, 2},
+    {Reference::previous, 0, 0, 0, 0, 0, 0, 3}, {Reference::previous, 0, 4, 0, 0, 4, 4, 0},
+    {Reference::previous, 0, 2, 2, 0, 0, 4, 0}, {Reference::change, kX | kZ, 0, 0, 0, 0, 0, 3},
 };
 inline constexpr Mode kPlaneKeyModes[kModes] = {
     {Reference::constant, 0, 8, 8, -8, 0, 4, 0},
@@ -115,18 +116,18 @@ inline constexpr Mode kPlaneKeyModes[kModes] = {
 };
 /// First and second plane of a pair, update; `cross` is not used.
 inline constexpr Mode kPairUpdateModes[2][kModes] = {
-    {{Reference::past, 0, 2, 2, 0, 0, 0, 0},
-     {Reference::past, 0, 6, 6, -4, 0, 0, 1},
-     {Reference::past, 0, 0, 0, 0, 0, 0, 2},
-     {Reference::past, 0, 4, 2, 0, 2, 0, 0},
+    {{Reference::previous, 0, 2, 2, 0, 0, 0, 0},
+     {Reference::previous, 0, 6, 6, -4, 0, 0, 1},
+     {Reference::previous, 0, 0, 0, 0, 0, 0, 2},
+     {Reference::previous, 0, 4, 2, 0, 2, 0, 0},
      {Reference::change, kX, 2, 1, 0, 1, 0, 3},
      {Reference::change, kY, 2, 1, 0, 1, 0, 3},
      {Reference::change, kZ, 2, 1, 0, 1, 0, 3},
-     {Reference::cap, 0, 6, 6, -4, 0, 0, 1}},
-    {{Reference::past, 0, 2, 1, 0, 1, 0, 0},
-     {Reference::past, 0, 0, 0, 0, 0, 0, 1},
-     {Reference::past, 0, 4, 2, 0, 2, 0, 0},
-     {Reference::past, 0, 2, 2, 0, 0, 0, 0},
+     {Reference::frequent, 0, 6, 6, -4, 0, 0, 1}},
+    {{Reference::previous, 0, 2, 1, 0, 1, 0, 0},
+     {Reference::previous, 0, 0, 0, 0, 0, 0, 1},
+     {Reference::previous, 0, 4, 2, 0, 2, 0, 0},
+     {Reference::previous, 0, 2, 2, 0, 0, 0, 0},
      {Reference::constant, 0, 2, 2, 0, 0, 0, 2},
      {Reference::change, kX | kY | kZ, 0, 0, 0, 0, 0, 3},
      {Reference::change, kY, 0, 0, 0, 0, 0, 3},
@@ -135,14 +136,14 @@ inline constexpr Mode kPairUpdateModes[2][kModes] = {
 /// Keyframes of pairs choose per texel and plane among these by what they left around; nothing is
 /// signalled.
 inline constexpr Mode kPairKeyModes[2][kModes] = {
-    {{Reference::cap, 0, 6, 6, -4, 0, 0},
+    {{Reference::frequent, 0, 6, 6, -4, 0, 0},
      {Reference::neighbours, kX, 6, 6, -4, 0, 0},
      {Reference::neighbours, kY, 6, 6, -4, 0, 0},
      {Reference::neighbours, kZ, 6, 6, -4, 0, 0},
      {Reference::neighbours, kX, 2, 2, 0, 0, 0},
      {Reference::neighbours, kY, 2, 2, 0, 0, 0},
      {Reference::neighbours, kZ, 2, 2, 0, 0, 0},
-     {Reference::cap, 0, 2, 1, 0, 1, 0}},
+     {Reference::frequent, 0, 2, 1, 0, 1, 0}},
     {{Reference::constant, 0, 2, 1, 0, 1, 0},
      {Reference::constant, 0, 8, 8, -8, 0, 0},
      {Reference::constant, 0, 2, 2, 0, 0, 0},
@@ -161,7 +162,7 @@ inline constexpr Thresholds kNarrowThresholds = {1,  3,  5,  8,   11,  16,  24, 
 inline constexpr Thresholds kWideThresholds = {1,   4,   8,   16,  32,   48,   64,  96,
                                                144, 208, 256, 512, 1024, 2048, 3072};
 
-/// Magnitudes of s in steps of 2^shift: what 16 entries starting at 0 know.
+/// Magnitudes of s in steps of 2^shift: the 16 entries from 0 on.
 constexpr NibbleTable magnitude_table(const Thresholds& thresholds, unsigned shift) {
   NibbleTable table{};
   for (unsigned i = 0; i < 16; ++i) {
@@ -173,6 +174,6 @@ constexpr NibbleTable magnitude_table(const Thresholds& thresholds, unsigned shi
 }
 
 /// Candidates of a pair's exact repetition, by index.
-inline constexpr unsigned kCandidates = 7;  // past, X, Y, Z, W, N, cap
+inline constexpr unsigned kCandidates = 7;  // previous, X, Y, Z, W, N, frequent
 
 }  // namespace gicodec::native

@@ -17,8 +17,8 @@ GICODEC_INLINE I16 weigh(const Four& m) {  // 4·W + 3·N + 2·NE + NW, at most 
   return add(add(shift_left<2>(m.w), add(shift_left<1>(m.n), m.n)), add(shift_left<1>(m.ne), m.nw));
 }
 
-/// The two best guesses of a texel's pair and the context that says how sure they are.
-struct Guess {
+/// The two best candidates of a texel's pair, and the context of the repeat symbol.
+struct BestCandidates {
   Pair first, second;
   I16 context;
 };
@@ -41,11 +41,12 @@ GICODEC_INLINE I16 nibble_of(const Nibbles& s, unsigned k) {
       return shift_right<8>(s.high);
   }
 }
-GICODEC_INLINE Guess guess(const Pair (&candidate)[kCandidates], const Nibbles& scores) {
+GICODEC_INLINE BestCandidates rank_candidates(const Pair (&candidate)[kCandidates],
+                                              const Nibbles& scores) {
   I16 score[kCandidates];
   GICODEC_UNROLL
   for (unsigned k = 0; k < kCandidates; ++k) score[k] = nibble_of(scores, k);
-  Guess g{candidate[0], candidate[0], set(0)};
+  BestCandidates g{candidate[0], candidate[0], set(0)};
   I16 best = score[0];
   GICODEC_UNROLL
   for (unsigned k = 1; k < kCandidates; ++k) {
@@ -54,7 +55,7 @@ GICODEC_INLINE Guess guess(const Pair (&candidate)[kCandidates], const Nibbles& 
     g.first = {select(better, candidate[k].a, g.first.a),
                select(better, candidate[k].b, g.first.b)};
   }
-  I16 votes = set(-1), best2 = set(-1);  // the first guess equals itself
+  I16 votes = set(-1), best2 = set(-1);  // the best candidate equals itself
   g.second = g.first;
   GICODEC_UNROLL
   for (unsigned k = 0; k < kCandidates; ++k) {
@@ -81,11 +82,11 @@ GICODEC_INLINE Nibbles matches(const Pair (&candidate)[kCandidates], const Pair&
 }
 
 /// Reference and prediction of one plane at one texel.
-struct Forecast {
+struct PlanePrediction {
   I16 reference, prediction;
 };
 
-/// Keyframes: every mode's prediction is followed; the one that left least around is used.
+/// Keyframes: every mode predicts; the one with the least recent error is used.
 struct KeyPredictor {
   std::uint16_t* difference[kModes];
   std::uint16_t* residual[kModes];
@@ -93,9 +94,9 @@ struct KeyPredictor {
   I16 prediction[kModes];
   I16 reference[kModes];
 };
-/// Trail of a mode: 2|W| + 2|N| + |NW| + |NE| + |WW| + |NN|, missing ones counting 0.
-GICODEC_INLINE I16 trail(const std::uint16_t* r, const Around& near, unsigned width, unsigned i,
-                         unsigned j, std::size_t at) {
+/// The residuals that a mode left around: 2|W| + 2|N| + |NW| + |NE| + |WW| + |NN|, missing ones 0.
+GICODEC_INLINE I16 recent_error(const std::uint16_t* r, const Around& near, unsigned width,
+                                unsigned i, unsigned j, std::size_t at) {
   if (near.first) return set(0);
   const I16 w = magnitude(load(r + near.w)), n = magnitude(load(r + near.n));
   I16 sum = add_sat(w, n);
@@ -121,13 +122,13 @@ GICODEC_INLINE bool code_pairs(const Group& g, Coder& coder) {
   std::uint16_t* residual[2] = {take(), take()};
   KeyPredictor key[2];
   Weights weights[2];
-  I16 klass[2];
+  I16 context_class[2];
   GICODEC_UNROLL
   for (unsigned p = 0; p < 2; ++p) {
-    klass[p] = set(0);
+    context_class[p] = set(0);
     if (g.update) {
       weights[p] = lane_weights(kPairUpdateModes[p], g.mode[p], true);
-      klass[p] = lane_classes(kPairUpdateModes[p], g.mode[p]);
+      context_class[p] = lane_classes(kPairUpdateModes[p], g.mode[p]);
       continue;
     }
     GICODEC_UNROLL
@@ -137,7 +138,7 @@ GICODEC_INLINE bool code_pairs(const Group& g, Coder& coder) {
       key[p].weights[m] = uniform_weights(kPairKeyModes[p][m], true);
     }
   }
-  const Pair cap = {set(g.cap[0]), set(g.cap[1])};
+  const Pair frequent = {set(g.frequent[0]), set(g.frequent[1])};
   std::size_t at = 0;
   for (unsigned j = 0; j < g.rows; ++j) {
     for (unsigned i = 0; i < g.width; ++i, at += kLanes) {
@@ -146,16 +147,16 @@ GICODEC_INLINE bool code_pairs(const Group& g, Coder& coder) {
       Pair candidate[kCandidates];
       GICODEC_UNROLL
       for (unsigned k = 0; k < 4; ++k) candidate[k] = load_pair(g.candidate[k], plane_size, here);
-      candidate[4] = near.first ? cap : load_pair(g.current, plane_size, near.w);
-      candidate[5] = near.first ? cap : load_pair(g.current, plane_size, near.n);
-      candidate[6] = cap;
-      const Guess guessed = guess(
+      candidate[4] = near.first ? frequent : load_pair(g.current, plane_size, near.w);
+      candidate[5] = near.first ? frequent : load_pair(g.current, plane_size, near.n);
+      candidate[6] = frequent;
+      const BestCandidates candidates = rank_candidates(
           candidate, {weigh(neighbours(match_low, near)), weigh(neighbours(match_high, near))});
 
-      Forecast forecast[2];
+      PlanePrediction predicted[2];
       GICODEC_UNROLL
       for (unsigned p = 0; p < 2; ++p) {
-        Forecast& f = forecast[p];
+        PlanePrediction& f = predicted[p];
         if (g.update) {
           f.reference = load(g.reference + p * plane_size + at);
           f.prediction = add(f.reference, apply_wide(weights[p], neighbours(difference[p], near)));
@@ -165,7 +166,7 @@ GICODEC_INLINE bool code_pairs(const Group& g, Coder& coder) {
         GICODEC_UNROLL
         for (unsigned m = 0; m < kModes; ++m) {
           const Mode& mode = kPairKeyModes[p][m];
-          const Pair* from = mode.reference == Reference::cap ? &cap
+          const Pair* from = mode.reference == Reference::frequent ? &frequent
                              : mode.reference == Reference::neighbours
                                  ? &candidate[mode.neighbours == kX   ? 1
                                               : mode.neighbours == kY ? 2
@@ -176,7 +177,8 @@ GICODEC_INLINE bool code_pairs(const Group& g, Coder& coder) {
           key[p].prediction[m] =
               add(reference, apply_wide(key[p].weights[m], neighbours(key[p].difference[m], near)));
           // Compared as signed: half of the sum keeps the order.
-          const I16 left = shift_right<1>(trail(key[p].residual[m], near, g.width, i, j, at));
+          const I16 left =
+              shift_right<1>(recent_error(key[p].residual[m], near, g.width, i, j, at));
           if (m == 0) {
             least = left;
             f.prediction = key[p].prediction[0];
@@ -187,53 +189,54 @@ GICODEC_INLINE bool code_pairs(const Group& g, Coder& coder) {
         }
       }
 
-      // What the texel is: the first guess, the second, or two residuals.
-      Pair value = guessed.first;
+      // The texel is the best candidate, the second-best, or two residuals.
+      Pair value = candidates.first;
       I16 symbol = set(0);
       if constexpr (!kDecode) {
         value = load_pair(g.current, plane_size, here);
-        const M16 is1 = mask_and(equal(value.a, guessed.first.a), equal(value.b, guessed.first.b));
+        const M16 is1 =
+            mask_and(equal(value.a, candidates.first.a), equal(value.b, candidates.first.b));
         const M16 is2 =
-            mask_and(equal(value.a, guessed.second.a), equal(value.b, guessed.second.b));
+            mask_and(equal(value.a, candidates.second.a), equal(value.b, candidates.second.b));
         symbol = select(is1, set(0), select(is2, set(1), set(2)));
       }
-      symbol = coder.hit(guessed.context, g.active, symbol);
+      symbol = coder.repeat(candidates.context, g.active, symbol);
       const std::uint32_t escaped = to_bits(equal(symbol, set(2))) & g.active;
       if constexpr (kDecode) {
         const M16 second = equal(symbol, set(1));
-        value = {select(second, guessed.second.a, guessed.first.a),
-                 select(second, guessed.second.b, guessed.first.b)};
+        value = {select(second, candidates.second.a, candidates.first.a),
+                 select(second, candidates.second.b, candidates.first.b)};
       }
       if (escaped != 0) {
         const M16 open = from_bits(escaped);
-        const Local l0 = look_around(neighbours(residual[0], near));
+        const LocalContext l0 = local_context(neighbours(residual[0], near));
         I16 size = near.first ? set(kFirstTexel) : magnitude_class(l0.energy, kWideMagnitudes);
-        I16 e = coder.token(0, 0, add(klass[0], add(l0.sign, size)), escaped, l0.lead,
-                            sub(value.a, forecast[0].prediction));
-        value.a = select(open, add(forecast[0].prediction, e), value.a);
+        I16 e = coder.token(0, 0, add(context_class[0], add(l0.sign, size)), escaped, l0.flip,
+                            sub(value.a, predicted[0].prediction));
+        value.a = select(open, add(predicted[0].prediction, e), value.a);
         const I16 a0 = magnitude(e);
-        const Local l1 = look_around(neighbours(residual[1], near));
+        const LocalContext l1 = local_context(neighbours(residual[1], near));
         const I16 cross = add_sat(a0, add_sat(a0, a0));
         size = magnitude_class(shift_right<1>(add_sat(l1.energy, cross)), kWideMagnitudes);
-        e = coder.token(1, 1, add(klass[1], add(l1.sign, size)), escaped, l1.lead,
-                        sub(value.b, forecast[1].prediction));
-        value.b = select(open, add(forecast[1].prediction, e), value.b);
+        e = coder.token(1, 1, add(context_class[1], add(l1.sign, size)), escaped, l1.flip,
+                        sub(value.b, predicted[1].prediction));
+        value.b = select(open, add(predicted[1].prediction, e), value.b);
       }
       if constexpr (kDecode) {
         store(g.current + at, value.a);
         store(g.current + plane_size + at, value.b);
       }
 
-      // Traces for the texels to come, the same for hits and escapes.
+      // State for later texels, the same for repeats and escapes.
       const Nibbles matched = matches(candidate, value);
       store(match_low + at, matched.low);
       store(match_high + at, matched.high);
       GICODEC_UNROLL
       for (unsigned p = 0; p < 2; ++p) {
         const I16 v = p == 0 ? value.a : value.b;
-        store(residual[p] + at, sub(v, forecast[p].prediction));
+        store(residual[p] + at, sub(v, predicted[p].prediction));
         if (g.update) {
-          store(difference[p] + at, sub(v, forecast[p].reference));
+          store(difference[p] + at, sub(v, predicted[p].reference));
           continue;
         }
         GICODEC_UNROLL

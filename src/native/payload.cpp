@@ -48,7 +48,7 @@ Grid large_box(const TextureDesc& desc) { return default_box(desc.grid, kMaxBoxP
 bool adapts(const EncodeJob& job, const EncodeSettings& settings) {
   // Cells and buckets, and whatever is as large as a brick.
   constexpr std::uint32_t kTinyBlock = 8, kSmallBlock = 64;
-  constexpr std::size_t kMostTiny = 1U << 26, kMostSmall = 1U << 18;
+  constexpr std::size_t kMaxTiny = 1U << 26, kMaxSmall = 1U << 18;
   const Adapts when = model_of(job.desc).adapts;
   if (when == Adapts::always) return true;
   if (when == Adapts::never || settings.set >= 0 || settings.lanes != 0 || settings.observe) {
@@ -57,7 +57,7 @@ bool adapts(const EncodeJob& job, const EncodeSettings& settings) {
   if (settings.strong || when == Adapts::if_strong) return settings.strong;
   const std::uint32_t records = record_count(job.desc.block);
   return records <= kSmallBlock && job.blocks.size() * block_bytes(job.desc) <=
-                                       (records <= kTinyBlock ? kMostTiny : kMostSmall);
+                                       (records <= kTinyBlock ? kMaxTiny : kMaxSmall);
 }
 
 /// What was learned in a chunk is lost to the others: each should have enough of the update.
@@ -119,12 +119,12 @@ std::size_t payload_bound(const TextureDesc& desc, std::size_t probes) noexcept 
 void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa isa,
                     PayloadMemory& memory, std::vector<std::byte>& out) {
   PlaneLayout layout = plane_layout(job.desc);
-  const Grid usual = box_of_texture(job.desc, layout);
+  const Grid implicit_box = box_of_texture(job.desc, layout);
   const bool adaptive = adapts(job, settings.chunk);
   const Grid box = settings.box.x != 0     ? settings.box
                    : adaptive              ? box_of_adaptive(job)
                    : settings.chunk.strong ? box_of_strong(job.desc, layout)
-                                           : usual;
+                                           : implicit_box;
   if (!adaptive) find_steps(job, kernels(isa), layout, memory.block_values);
   Update update{.desc = job.desc,
                 .layout = layout,
@@ -148,14 +148,14 @@ void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa i
         encode_chunk(update, positions_of(lists, i), job.records, settings.chunk, w, chunks[i]);
       });
   const bool directory = chunks.size() > 1;
-  const bool large = box != usual && box == large_box(job.desc);
-  const bool told = box != usual && !large;
+  const bool large = box != implicit_box && box == large_box(job.desc);
+  const bool explicit_box = box != implicit_box && !large;
   ByteWriter writer(out);
-  const auto parts = (told ? kHasBox : 0U) | (large ? kLargeBox : 0U) |
+  const auto parts = (explicit_box ? kHasBox : 0U) | (large ? kLargeBox : 0U) |
                      (directory ? kHasDirectory : 0U) | (layout.stepped ? kHasSteps : 0U);
   writer.fixed(static_cast<std::uint8_t>(kVersion | parts << kPartsShift));
   std::size_t at = kHead;
-  if (told) {
+  if (explicit_box) {
     for (const auto side : {box.x, box.y, box.z, 0U})
       writer.fixed(static_cast<std::uint16_t>(side));
     at += 8;
@@ -238,8 +238,8 @@ Status read_payload_head(const TextureDesc& desc, std::span<const std::byte> pay
 Status check_payload(const TextureDesc& desc, std::size_t probes,
                      std::span<const std::byte> payload, PayloadMemory& memory) {
   const PayloadHead& head = memory.head;
-  const Status sound = read_payload_head(desc, payload, memory.head);
-  if (sound != Status::ok) return sound;
+  if (const Status read = read_payload_head(desc, payload, memory.head); read != Status::ok)
+    return read;
   const std::size_t volume = std::size_t{head.box.x} * head.box.y * head.box.z;
   const std::size_t boxes = chunk_grid(desc.grid, head.box).count();
   const std::size_t chunks = head.chunks.size();
@@ -257,8 +257,8 @@ Status check_payload(const TextureDesc& desc, std::size_t probes,
 
 Status decode_payload(const DecodeJob& job, Isa isa, PayloadMemory& memory) {
   const PayloadHead& head = memory.head;
-  const Status sound = read_payload_head(job.desc, job.payload, memory.head);
-  if (sound != Status::ok) return sound;
+  if (const Status read = read_payload_head(job.desc, job.payload, memory.head); read != Status::ok)
+    return read;
   Update update{.desc = job.desc,
                 .layout = head.layout,
                 .kernels = kernels(isa),

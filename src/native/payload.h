@@ -25,11 +25,11 @@ struct PayloadHead {
 struct PayloadMemory {
   Vector<Workspace> workspaces;  ///< of each thread
   ChunkLists lists;
-  Vector<std::uint16_t> block_values;          ///< encoding: of a block that is looked at
+  Vector<std::uint16_t> block_values;          ///< encoding: of one block at a time
   std::vector<std::vector<std::byte>> chunks;  ///< encoding
   PayloadHead head;                            ///< decoding, as what follows
   Vector<Status> status;                       ///< of each chunk
-  ChunkHead chunk_head;                        ///< of one that is looked at
+  ChunkHead chunk_head;                        ///< of one chunk at a time
   Vector<PlacedBrick> held;                    ///< Update::held
 };
 
@@ -38,8 +38,8 @@ struct PayloadMemory {
 /// Appends the payload. Its bytes do not depend on `threads` or `isa`.
 void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa isa,
                     PayloadMemory& memory, std::vector<std::byte>& out);
-/// What can be told of a payload for that many probes without them: its head, its sizes, the heads
-/// and tables of its chunks. Takes time and memory in proportion to the bytes.
+/// Checks what a payload for that many probes holds as far as that needs no probes: its head, its
+/// sizes, the heads and tables of its chunks. Takes time and memory in proportion to the bytes.
 Status check_payload(const TextureDesc& desc, std::size_t probes,
                      std::span<const std::byte> payload, PayloadMemory& memory);
 /// Safe on any bytes.

@@ -14,7 +14,7 @@ struct PlaneCoding {
   std::uint16_t* difference;  ///< [plane][texel][lane]
   std::uint16_t* residual;
   Weights weights[2];      ///< for narrow and for wide planes
-  I16 klass;               ///< class part of each lane's contexts
+  I16 context_class;       ///< class part of each lane's contexts
   std::uint16_t* matched;  ///< [texel][lane]: repeats
   std::uint16_t* choice;
   std::uint16_t* exponent;  ///< [texel][lane], if shared
@@ -43,8 +43,8 @@ GICODEC_INLINE void replace_absent(const Group& g, const std::uint16_t* here, co
   replace(near.ne, around.ne);
 }
 
-/// What a low plane goes by: residuals around, those of the first low plane here, and whether the
-/// high half of its component changed, which leaves nothing to know.
+/// The energy of a low plane: residuals around, those of the first low plane here, and whether the
+/// high half of its component changed, after which nothing predicts it.
 GICODEC_INLINE I16 low_energy(const PlaneCoding& c, unsigned p, std::size_t at, I16 energy) {
   const unsigned first = static_cast<unsigned>(__builtin_ctz(c.group.low));
   I16 sum = shift_right<4>(energy);
@@ -55,8 +55,7 @@ GICODEC_INLINE I16 low_energy(const PlaneCoding& c, unsigned p, std::size_t at, 
   return add(sum, shift_right<3>(magnitude(load(c.residual + first * c.plane_size + at))));
 }
 
-/// What the texel's mantissas need to know of exponents: its own, that of its reference and those
-/// around.
+/// Scales of the texel's mantissas, by the exponents of the texel, its reference and those around.
 GICODEC_INLINE void note_scales(const PlaneCoding& c, const Four& exponents, I16 reference,
                                 I16 exponent, std::size_t at) {
   std::uint16_t* const to = c.scale + at;
@@ -99,7 +98,7 @@ GICODEC_INLINE void code_texel(const PlaneCoding& c, unsigned p, unsigned i, uns
                     : apply_narrow(weights, ds);
   Four rs = neighbours(r, near);
   if constexpr (kPartial) replace_absent(g, r + at, near, rs);
-  Local local = look_around(rs);
+  LocalContext local = local_context(rs);
   const MagnitudeTables& magnitudes = wide ? kWideMagnitudes : kNarrowMagnitudes;
   I16 size;
   if (p == 0 || exponent) {
@@ -130,16 +129,16 @@ GICODEC_INLINE void code_texel(const PlaneCoding& c, unsigned p, unsigned i, uns
     size = magnitude_class(add_sat(sub(energy, shift_right<2>(energy)), cross), magnitudes);
     if (c.any_follows) follow(c.follows, votes, rs, local, size);
   }
-  const I16 context = add(add(c.klass, local.sign), size);
+  const I16 context = add(add(c.context_class, local.sign), size);
   I16 prediction = add(reference, op);
   if (mantissa) prediction = min_u(max_s(prediction, set(0)), set((1 << bits) - 1));
   I16 e = set(0);
   if constexpr (!kDecode) e = wrap(sub(load(g.current + p * c.plane_size + at), prediction), bits);
   const I16 choice = kRepeats ? load(c.choice + at) : set(0);
   const std::uint32_t open =
-      kRepeats ? to_bits(equal(choice, set(kOpen))) & g.active : present.here;
+      kRepeats ? to_bits(equal(choice, set(kNoRepeat))) & g.active : present.here;
   if (kTexels == Texels::all || open != 0) {
-    e = coder.token(place_of(p, g.low), p, context, open, local.lead, e);
+    e = coder.token(place_of(p, g.low), p, context, open, local.flip, e);
   }
   I16 value = bit_and(add(prediction, e), set((1 << bits) - 1));
   if constexpr (kRepeats && kDecode) {
@@ -169,8 +168,8 @@ GICODEC_INLINE void code_texel(const PlaneCoding& c, unsigned p, unsigned i, uns
   note_scales(c, exponents, reference, value, at);
 }
 
-/// Plane p is coded p texels behind plane 0, so that the symbols of a turn do not wait for each
-/// other's residuals; a shared exponent goes ahead of all, since mantissas say little without.
+/// Plane p is coded p texels behind plane 0, so that the symbols of a turn do not depend on each
+/// other's residuals; a shared exponent goes first, since mantissas depend on it.
 template <bool kDecode, Texels kTexels, bool kShared, typename Coder>
 [[gnu::noinline]] bool code_planes(const Group& g, Coder& coder) {
   const std::size_t texels = std::size_t{g.width} * g.rows;
@@ -189,10 +188,10 @@ template <bool kDecode, Texels kTexels, bool kShared, typename Coder>
                 {},
                 false};
   if (g.update) {
-    c.follows = equal(c.klass, set(kFollowClass * kClassStep));
+    c.follows = equal(c.context_class, set(kFollowClass * kClassStep));
     c.any_follows = (to_bits(c.follows) & g.active) != 0;
   }
-  for (unsigned p = 0; p < g.planes; ++p) {  // Others look at some of these.
+  for (unsigned p = 0; p < g.planes; ++p) {  // Other planes read some of these.
     if ((g.coded >> p & 1) != 0) continue;
     for (std::size_t k = 0; k < c.plane_size; k += kLanes)
       store(c.residual + p * c.plane_size + k, set(0));

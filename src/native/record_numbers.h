@@ -8,7 +8,7 @@
 
 namespace gicodec::native {
 
-inline constexpr std::uint64_t kMostGuess = std::uint64_t{1} << 41;
+inline constexpr std::uint64_t kMaxPrediction = std::uint64_t{1} << 41;
 
 inline std::uint32_t largest(unsigned bits) {
   return static_cast<std::uint32_t>((std::uint64_t{1} << bits) - 1);
@@ -46,12 +46,12 @@ inline std::uint32_t half_octave(std::uint64_t value) {
 }
 inline std::uint32_t sign_of(std::int64_t value) { return value < 0 ? 0 : value == 0 ? 1 : 2; }
 
-/// value · to / from, for values and results up to kMostGuess; `from` is not 0.
+/// value · to / from, for values and results up to kMaxPrediction; `from` is not 0.
 inline std::uint64_t in_proportion(std::uint64_t value, std::uint64_t to, std::uint64_t from) {
   constexpr int kDigits = 16;
-  constexpr std::uint64_t kMostTo = (1U << 20) - 1;
+  constexpr std::uint64_t kMaxTo = (1U << 20) - 1;
   const int shift = std::max(0, static_cast<int>(std::bit_width(from)) - kDigits);
-  return std::min(value * std::min(to >> shift, kMostTo) / (from >> shift), kMostGuess);
+  return std::min(value * std::min(to >> shift, kMaxTo) / (from >> shift), kMaxPrediction);
 }
 
 }  // namespace gicodec::native

@@ -38,7 +38,7 @@ const std::uint16_t* reference_block(const Mode& mode, const Known& known, std::
       ++n;
     }
   }
-  if (mode.reference == Reference::past) return known.past + at;
+  if (mode.reference == Reference::previous) return known.previous + at;
   if (mode.reference == Reference::neighbours && n > 0) {
     if (n == 1) return current[0];
     for (std::size_t t = 0; t < count; ++t) out[t] = mean(current[0][t], current[1][t]);
@@ -48,23 +48,23 @@ const std::uint16_t* reference_block(const Mode& mode, const Known& known, std::
     return out;
   }
   if (mode.reference == Reference::change) {
-    const std::uint16_t* past = known.past + at;
-    if (n == 0) return past;
+    const std::uint16_t* previous = known.previous + at;
+    if (n == 0) return previous;
     if (n == 1) {
       for (std::size_t t = 0; t < count; ++t) {
-        out[t] = static_cast<std::uint16_t>(past[t] + change(current[0][t], before[0][t]));
+        out[t] = static_cast<std::uint16_t>(previous[t] + change(current[0][t], before[0][t]));
       }
     } else if (n == 2) {
       for (std::size_t t = 0; t < count; ++t) {
-        out[t] =
-            static_cast<std::uint16_t>(past[t] + mean_change(change(current[0][t], before[0][t]),
-                                                             change(current[1][t], before[1][t])));
+        out[t] = static_cast<std::uint16_t>(
+            previous[t] +
+            mean_change(change(current[0][t], before[0][t]), change(current[1][t], before[1][t])));
       }
     } else {
       for (std::size_t t = 0; t < count; ++t) {
         const auto two =
             mean_change(change(current[0][t], before[0][t]), change(current[1][t], before[1][t]));
-        out[t] = static_cast<std::uint16_t>(past[t] +
+        out[t] = static_cast<std::uint16_t>(previous[t] +
                                             mean_change(two, change(current[2][t], before[2][t])));
       }
     }

@@ -1,12 +1,12 @@
-// Repeats (docs/native.md, "Repeats"): records of many planes that are those of the past or of a
-// neighbouring block, bit for bit.
+// Repeats (docs/native.md, "Repeats"): records of many planes that equal those of the mirror or of
+// a neighbouring block.
 
-constexpr unsigned kOpen = kBlockCandidates;  ///< choice of a texel that repeats nothing
+constexpr unsigned kNoRepeat = kBlockCandidates;  ///< choice of a texel that repeats nothing
 
-/// What a texel may repeat, in all lanes: a bit of every nibble for the candidates that are alike,
-/// and the number of one of them.
+/// A candidate of all lanes: a bit of every nibble for the candidates that it equals, and its
+/// number.
 struct Repeated {
-  I16 alike, number;
+  I16 equal_to, number;
 };
 GICODEC_INLINE I16 bit_of(unsigned k) { return set(1 << 4 * k); }
 /// Whether two texels of a group are the same in all planes that are coded.
@@ -32,8 +32,8 @@ GICODEC_INLINE void code_repeat(const Group& g, std::size_t plane_size, std::uin
   for (unsigned k = 0; k < kBlockCandidates; ++k) {
     for (unsigned l = k + 1; l < kBlockCandidates; ++l) {
       const M16 same = same_texel(g, plane_size, g.candidate[k] + at, g.candidate[l] + at);
-      candidate[k].alike = bit_or(candidate[k].alike, keep(same, bit_of(l)));
-      candidate[l].alike = bit_or(candidate[l].alike, keep(same, bit_of(k)));
+      candidate[k].equal_to = bit_or(candidate[k].equal_to, keep(same, bit_of(l)));
+      candidate[l].equal_to = bit_or(candidate[l].equal_to, keep(same, bit_of(k)));
     }
   }
   const Nibbles scores{weigh(neighbours(matched, near)), set(0)};
@@ -43,18 +43,18 @@ GICODEC_INLINE void code_repeat(const Group& g, std::size_t plane_size, std::uin
     const I16 score = nibble_of(scores, k);
     const M16 better = greater(score, best);
     best = max_s(best, score);
-    first = {select(better, candidate[k].alike, first.alike),
+    first = {select(better, candidate[k].equal_to, first.equal_to),
              select(better, candidate[k].number, first.number)};
   }
   Repeated second = first;
   I16 votes = set(-1), best2 = set(-1);
   for (unsigned k = 0; k < kBlockCandidates; ++k) {
     const I16 score = nibble_of(scores, k);
-    const M16 same = equal(bit_and(first.alike, bit_of(k)), bit_of(k));
+    const M16 same = equal(bit_and(first.equal_to, bit_of(k)), bit_of(k));
     votes = add(votes, keep(same, set(1)));
     const M16 better = mask_andnot(greater(score, best2), same);
     best2 = select(better, score, best2);
-    second = {select(better, candidate[k].alike, second.alike),
+    second = {select(better, candidate[k].equal_to, second.equal_to),
               select(better, candidate[k].number, second.number)};
   }
   I16 symbol = set(0);
@@ -64,14 +64,14 @@ GICODEC_INLINE void code_repeat(const Group& g, std::size_t plane_size, std::uin
       const M16 same = same_texel(g, plane_size, g.candidate[k] + at, g.current + at);
       mine = bit_or(mine, keep(same, bit_of(k)));
     }
-    symbol =
-        select(equal(mine, first.alike), set(0), select(equal(mine, second.alike), set(1), set(2)));
+    symbol = select(equal(mine, first.equal_to), set(0),
+                    select(equal(mine, second.equal_to), set(1), set(2)));
   }
   const I16 context = add(add(shift_left<2>(best), best), votes);
-  symbol = coder.hit(context, g.active, symbol);
+  symbol = coder.repeat(context, g.active, symbol);
   const M16 is0 = equal(symbol, set(0)), is1 = equal(symbol, set(1));
-  store(matched + at, select(is0, first.alike, keep(is1, second.alike)));
-  store(choice + at, select(is0, first.number, select(is1, second.number, set(kOpen))));
+  store(matched + at, select(is0, first.equal_to, keep(is1, second.equal_to)));
+  store(choice + at, select(is0, first.number, select(is1, second.number, set(kNoRepeat))));
 }
 
 /// One plane of what a texel repeats; anything where it repeats nothing.

@@ -15,7 +15,7 @@ double token_bits(const RoleTables& tables, std::uint16_t context, std::uint16_t
   return tables.price[tables.map[context]][bin_of(value)] * kPriceUnit;
 }
 
-void count_hits(const Step& step, const HitTables& tables, PayloadStatistics& s) {
+void count_repeats(const Step& step, const RepeatTables& tables, PayloadStatistics& s) {
   for (std::uint32_t rest = step.active; rest != 0; rest &= rest - 1) {
     const auto l = static_cast<unsigned>(std::countr_zero(rest));
     const std::uint32_t end[] = {0, tables.end(0, step.context[l]), tables.end(1, step.context[l]),
@@ -53,8 +53,8 @@ void count_group(const Update& u, const Group& group, const Tables& tables, Work
   const Step* const end = u.layout.pairs ? u.kernels.model_pairs(group, w.steps.data())
                                          : u.kernels.model_planes(group, w.steps.data());
   for (; step != end; ++step) {
-    if (step->hit != 0) {
-      count_hits(*step, *tables.hits, s);
+    if (step->repeat != 0) {
+      count_repeats(*step, *tables.repeats, s);
     } else {
       count_residuals(*step, step->plane, *tables.role[step->place], s);
     }

@@ -10,23 +10,24 @@ namespace {
 constexpr std::size_t kSampled = 8;  ///< blocks
 
 /// The values of a plane as far as they were seen.
-struct Seen {
+struct PlaneStatistics {
   std::uint32_t step = 0;  ///< greatest common divisor; 0: none but 0
   std::uint16_t least = 0xFFFF, most = 0;
 };
 
 /// In pairs, whose differences wrap, only powers of two divide. Zeros, of which every step is a
 /// divisor, are passed over where they may not exist.
-void see(const PlaneLayout& layout, unsigned plane, bool zeros,
-         std::span<const std::uint16_t> values, Seen& seen) {
+void accumulate(const PlaneLayout& layout, unsigned plane, bool zeros,
+                std::span<const std::uint16_t> values, PlaneStatistics& statistics) {
   const std::uint32_t largest = (1U << layout.plane[plane].stored) - 1;
   for (const std::uint16_t value : values) {
     if (value == 0 && !zeros) continue;
-    seen.least = std::min(seen.least, value);
-    seen.most = std::max(seen.most, value);
-    if (seen.step == 1 || (value == largest && !layout.pairs)) continue;
-    const std::uint32_t both = layout.pairs ? seen.step | value : std::gcd(seen.step, value);
-    seen.step = layout.pairs ? both & (~both + 1) : both;
+    statistics.least = std::min(statistics.least, value);
+    statistics.most = std::max(statistics.most, value);
+    if (statistics.step == 1 || (value == largest && !layout.pairs)) continue;
+    const std::uint32_t both =
+        layout.pairs ? statistics.step | value : std::gcd(statistics.step, value);
+    statistics.step = layout.pairs ? both & (~both + 1) : both;
   }
 }
 
@@ -42,36 +43,36 @@ class StepFinder {
   void run() {
     const bool zeros = job_.desc.presence == Presence::all;
     const std::size_t blocks = job_.blocks.size(), sampled = std::min(blocks, kSampled);
-    std::uint64_t hopeful = (std::uint64_t{1} << layout_.planes) - 1;
-    for (std::size_t i = 0; i < sampled && hopeful != 0; ++i) {
+    std::uint64_t candidates = (std::uint64_t{1} << layout_.planes) - 1;
+    for (std::size_t i = 0; i < sampled && candidates != 0; ++i) {
       unpack(i * blocks / sampled);
       for (unsigned p = 0; p < layout_.planes; ++p) {
-        see(layout_, p, zeros, plane(p), seen_[p]);
-        if (seen_[p].step == 1) hopeful &= ~(std::uint64_t{1} << p);
+        accumulate(layout_, p, zeros, plane(p), statistics_[p]);
+        if (statistics_[p].step == 1) candidates &= ~(std::uint64_t{1} << p);
       }
     }
     PlaneLayout tried = layout_;
     for (unsigned p = 0; p < layout_.planes; ++p) {
       // A constant needs no steps.
-      const bool some = seen_[p].step > 1 && seen_[p].least < seen_[p].most;
-      if (!some) hopeful &= ~(std::uint64_t{1} << p);
-      if (some) set_step(tried, p, seen_[p].step);
+      const bool some = statistics_[p].step > 1 && statistics_[p].least < statistics_[p].most;
+      if (!some) candidates &= ~(std::uint64_t{1} << p);
+      if (some) set_step(tried, p, statistics_[p].step);
     }
-    for (std::size_t i = 0; i < blocks && hopeful != 0; ++i) {
+    for (std::size_t i = 0; i < blocks && candidates != 0; ++i) {
       unpack(i);
       for (unsigned p = 0; p < layout_.planes; ++p) {
-        if ((hopeful >> p & 1) == 0 || kernels_.has_steps(tried, p, plane(p).data(), texels_))
+        if ((candidates >> p & 1) == 0 || kernels_.has_steps(tried, p, plane(p).data(), texels_))
           continue;
-        see(layout_, p, zeros, plane(p), seen_[p]);
-        if (seen_[p].step == 1) {
-          hopeful &= ~(std::uint64_t{1} << p);
+        accumulate(layout_, p, zeros, plane(p), statistics_[p]);
+        if (statistics_[p].step == 1) {
+          candidates &= ~(std::uint64_t{1} << p);
         } else {
-          set_step(tried, p, seen_[p].step);
+          set_step(tried, p, statistics_[p].step);
         }
       }
     }
     for (unsigned p = 0; p < layout_.planes; ++p) {
-      if ((hopeful >> p & 1) != 0) set_step(layout_, p, seen_[p].step);
+      if ((candidates >> p & 1) != 0) set_step(layout_, p, statistics_[p].step);
     }
   }
 
@@ -89,7 +90,7 @@ class StepFinder {
   PlaneLayout& layout_;
   std::size_t texels_;
   std::uint16_t* planes_ = nullptr;
-  Seen seen_[kMaxPlanes] = {};
+  PlaneStatistics statistics_[kMaxPlanes] = {};
 };
 
 }  // namespace

@@ -8,10 +8,11 @@
 
 namespace gicodec::native {
 
-inline constexpr std::size_t kMemberNumbers = 2 + kListed;
-inline constexpr std::size_t kRoleNumbers = kMembers * kMemberNumbers + kContexts;
-inline constexpr std::size_t kHitNumbers = 2 * kMembers + kHitContexts;
-inline constexpr std::size_t kTableCount = kRoles * kSets * kRoleNumbers + 2 * kSets * kHitNumbers;
+inline constexpr std::size_t kDistributionNumbers = 2 + kListed;
+inline constexpr std::size_t kRoleNumbers = kDistributions * kDistributionNumbers + kContexts;
+inline constexpr std::size_t kRepeatNumbers = 2 * kDistributions + kRepeatContexts;
+inline constexpr std::size_t kTableCount =
+    kRoles * kSets * kRoleNumbers + 2 * kSets * kRepeatNumbers;
 extern const std::uint16_t kTableNumbers[kTableCount];
 
 }  // namespace gicodec::native

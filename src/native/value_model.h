@@ -21,15 +21,15 @@ struct FlagContext {
 /// Memory of one thread, kept for its capacity.
 class ValueModel {
  public:
-  static constexpr unsigned kFlags = 256, kWays = 2 * static_cast<unsigned>(kMaxComponents);
+  static constexpr unsigned kFlags = 256, kChannels = 2 * static_cast<unsigned>(kMaxComponents);
 
   void reset() {
-    lines_.reset();
+    counters_.reset();
     flags_.assign(kFlags, {});
-    values_.assign(kWays * kMostBits, {});
-    widths_.assign(kWays * kMostBits, {});
-    digits_.assign(kWays * kMostDigits, {});
-    noise_.assign(kWays * kNibbles, {});
+    values_.assign(kChannels * kMaxBits, {});
+    widths_.assign(kChannels * kMaxBits, {});
+    digits_.assign(kChannels * kMaxDigits, {});
+    noise_.assign(kChannels * kNibbles, {});
   }
 
   template <typename Coder>
@@ -37,7 +37,7 @@ class ValueModel {
             bool value) {
     return flag(coder, flags_[mixer], by, value);
   }
-  /// That nothing but itself tells of.
+  /// Without other contexts.
   template <typename Coder>
   bool flag(Coder& coder, unsigned mixer, std::uint32_t role, bool value) {
     return flag(coder, mixer, {{{role, 0}, {role, 1}, {role, 2}}}, value);
@@ -48,27 +48,27 @@ class ValueModel {
             const std::array<FlagContext, kFlagContexts>& by, bool value) {
     std::array<Counter*, kFlagContexts> context;
     for (std::size_t i = 0; i < kFlagContexts; ++i) {
-      context[i] = lines_[by[i].hash] + by[i].index;
+      context[i] = counters_[by[i].hash] + by[i].index;
     }
-    std::uint32_t said = 0;
-    return code_bit(coder, context, mixer, value, said);
+    std::uint32_t probability = 0;
+    return code_bit(coder, context, mixer, value, probability);
   }
 
-  /// A value of `bits` bits, four at a time from the highest on. What turns out to be noise is
-  /// coded as it is, and looked at again now and then. `way`: whose mixers and noise.
+  /// A value of `bits` bits, four at a time from the highest on. Noise is
+  /// coded by bypass bits, and modelled again after a while. `channel`: whose mixers and noise.
   template <typename Coder>
-  std::uint32_t value(Coder& coder, unsigned way, const ValueContexts& by, unsigned bits,
+  std::uint32_t value(Coder& coder, unsigned channel, const ValueContexts& by, unsigned bits,
                       std::uint32_t value) {
     std::uint32_t prefix = 1;
     for (unsigned done = 0, n = 0; done < bits; ++n) {
       const unsigned width = std::min(4U, bits - done);
-      Noise& noise = noise_[way * kNibbles + n];
+      Noise& noise = noise_[channel * kNibbles + n];
       std::uint32_t nibble = value >> (bits - done - width) & ((1U << width) - 1);
-      if (noise.plain > 0) {
-        --noise.plain;
-        nibble = coder.plain(width, nibble);
+      if (noise.bypass > 0) {
+        --noise.bypass;
+        nibble = coder.bypass(width, nibble);
       } else {
-        nibble = modelled(coder, way * kMostBits + done, by, prefix, width, nibble, noise);
+        nibble = modelled(coder, channel * kMaxBits + done, by, prefix, width, nibble, noise);
       }
       prefix = prefix << width | nibble;
       done += width;
@@ -80,82 +80,83 @@ class ValueModel {
   /// A number of up to 32 bits and a sign: its width, its sign by `signs`, the bits below its
   /// first one.
   template <typename Coder>
-  std::int64_t number(Coder& coder, unsigned way, const ValueContexts& by,
+  std::int64_t number(Coder& coder, unsigned channel, const ValueContexts& by,
                       const std::array<FlagContext, kFlagContexts>& signs, std::int64_t value) {
-    constexpr unsigned kMost = 32;
+    constexpr unsigned kMax = 32;
     const auto magnitude = static_cast<std::uint32_t>(std::abs(value));
-    const auto told = static_cast<unsigned>(std::bit_width(magnitude));
+    const auto actual = static_cast<unsigned>(std::bit_width(magnitude));
     std::array<Counter*, kValueContexts> context;
     unsigned width = 0;
-    for (; width < kMost; ++width) {
+    for (; width < kMax; ++width) {
       if (width % kStep == 0) {
         for (std::size_t i = 0; i < kValueContexts; ++i) {
-          context[i] = lines_[hashed(by[i], width)];
+          context[i] = counters_[hashed(by[i], width)];
         }
       }
-      std::uint32_t said = 0;
-      const bool more =
-          code_bit(coder, context, widths_[way * kMostBits + width], told > width, said);
+      std::uint32_t probability = 0;
+      const bool more = code_bit(coder, context, widths_[channel * kMaxBits + width],
+                                 actual > width, probability);
       for (auto& c : context) ++c;
       if (!more) break;
     }
     if (width == 0) return 0;
-    const bool negative = flag(coder, kSignFlags + way, signs, value < 0);
+    const bool negative = flag(coder, kSignFlags + channel, signs, value < 0);
     std::uint32_t read = 1;
     unsigned left = width - 1;
-    for (unsigned digit = 0; digit < kMostDigits && left > 0; ++digit) {
+    for (unsigned digit = 0; digit < kMaxDigits && left > 0; ++digit) {
       --left;
       const std::array<Counter*, kFlagContexts> seen{
-          lines_[hashed(kDigits, way, width)] + (read & 15),
-          lines_[hashed(by[0], kDigits, width)] + (read & 15),
-          lines_[hashed(by[1], kDigits, width)] + (read & 15)};
-      std::uint32_t said = 0;
-      const bool bit = code_bit(coder, seen, digits_[way * kMostDigits + digit],
-                                (magnitude >> left & 1) != 0, said);
+          counters_[hashed(kDigits, channel, width)] + (read & 15),
+          counters_[hashed(by[0], kDigits, width)] + (read & 15),
+          counters_[hashed(by[1], kDigits, width)] + (read & 15)};
+      std::uint32_t probability = 0;
+      const bool bit = code_bit(coder, seen, digits_[channel * kMaxDigits + digit],
+                                (magnitude >> left & 1) != 0, probability);
       read = read << 1 | (bit ? 1U : 0U);
     }
     if (left > 0) {
       read = static_cast<std::uint32_t>(std::uint64_t{read} << left) |
-             coder.plain(left, magnitude & ((1U << left) - 1));
+             coder.bypass(left, magnitude & ((1U << left) - 1));
     }
     return negative ? -std::int64_t{read} : std::int64_t{read};
   }
 
  private:
-  static constexpr unsigned kMostBits = 32, kNibbles = 8, kMostDigits = 3, kStep = 16;
-  static constexpr unsigned kSignFlags = kFlags - kWays;
+  static constexpr unsigned kMaxBits = 32, kNibbles = 8, kMaxDigits = 3, kStep = 16;
+  static constexpr unsigned kSignFlags = kFlags - kChannels;
   static constexpr std::uint32_t kDigits = 99;
-  static constexpr std::int32_t kFirstGain = 8192, kLeastGain = 512;
-  static constexpr unsigned kPlainRun = 15;
+  static constexpr std::int32_t kFirstGain = 8192, kMinGain = 512;
+  static constexpr unsigned kBypassRun = 15;
 
   struct Noise {
-    std::int32_t gain = kFirstGain;  ///< by which bits are told before, of 65536
-    unsigned plain = 0;              ///< how often it is still taken as it is
+    std::int32_t gain = kFirstGain;  ///< mean sum over a nibble of the margin of its bits'
+                                     ///< probabilities over a half, of 65536
+    unsigned bypass = 0;             ///< nibbles to come that are coded by bypass bits
   };
 
   template <typename Coder>
   std::uint32_t modelled(Coder& coder, unsigned mixer, const ValueContexts& by,
                          std::uint32_t prefix, unsigned width, std::uint32_t nibble, Noise& noise) {
-    std::array<Counter*, kValueContexts> line;
-    for (std::size_t i = 0; i < kValueContexts; ++i) line[i] = lines_[hashed(by[i], prefix)];
+    std::array<Counter*, kValueContexts> bucket;
+    for (std::size_t i = 0; i < kValueContexts; ++i) bucket[i] = counters_[hashed(by[i], prefix)];
     std::uint32_t node = 1;
-    std::int32_t told = 0;
+    std::int32_t margin = 0;
     for (unsigned b = 0; b < width; ++b) {
       std::array<Counter*, kValueContexts> context;
-      for (std::size_t i = 0; i < kValueContexts; ++i) context[i] = line[i] + node;
-      std::uint32_t said = 0;
-      const bool bit =
-          code_bit(coder, context, values_[mixer + b], (nibble >> (width - 1 - b) & 1) != 0, said);
-      const std::int32_t right = static_cast<std::int32_t>(said) - 32768;
-      told += bit ? right : -right;
+      for (std::size_t i = 0; i < kValueContexts; ++i) context[i] = bucket[i] + node;
+      std::uint32_t probability = 0;
+      const bool bit = code_bit(coder, context, values_[mixer + b],
+                                (nibble >> (width - 1 - b) & 1) != 0, probability);
+      const std::int32_t right = static_cast<std::int32_t>(probability) - 32768;
+      margin += bit ? right : -right;
       node = node << 1 | (bit ? 1U : 0U);
     }
-    noise.gain += (told - noise.gain) >> 5;
-    if (noise.gain < kLeastGain) noise.plain = kPlainRun;
+    noise.gain += (margin - noise.gain) >> 5;
+    if (noise.gain < kMinGain) noise.bypass = kBypassRun;
     return node & ((1U << width) - 1);
   }
 
-  Lines lines_;
+  CounterTable counters_;
   Vector<Mixer<kFlagContexts>> flags_, digits_;
   Vector<Mixer<kValueContexts>> values_, widths_;
   Vector<Noise> noise_;

@@ -47,13 +47,13 @@ void Workspace::prepare(const Update& u, std::span<const std::uint32_t> position
   grow(scratch_, scratch_size(u.texels(), planes, u.layout.pairs, u.layout.shared));
   if (u.partial()) present_.resize(u.texels());
   if (u.layout.pairs) {
-    grow(cap_, stride_);
+    grow(frequent_, stride_);
     for (auto& v : lanes_candidate_) grow(v, lane_values);
   }
   if (!u.mirrored) return;
-  grow(past_, chunk.blocks.size() * stride_);
+  grow(previous_, chunk.blocks.size() * stride_);
   for (std::size_t b = u.update ? 0 : chunk.coded; b < chunk.blocks.size(); ++b) {
-    u.unpack(u.mirror.blocks[chunk.blocks[b].probe].data(), past_.data() + b * stride_);
+    u.unpack(u.mirror.blocks[chunk.blocks[b].probe].data(), previous_.data() + b * stride_);
   }
 }
 
@@ -67,7 +67,8 @@ void Workspace::set_head(const Update& u) {
     const bool mantissa = u.layout.shared && p + 1 < u.layout.planes;
     const auto half = u.layout.pairs || mantissa ? 0U : 1U << (u.layout.plane[p].bits - 1);
     std::fill_n(constant_.data() + p * u.texels(), u.texels(), static_cast<std::uint16_t>(half));
-    if (u.layout.pairs) std::fill_n(cap_.data() + p * u.texels(), u.texels(), head.cap[p]);
+    if (u.layout.pairs)
+      std::fill_n(frequent_.data() + p * u.texels(), u.texels(), head.frequent[p]);
   }
 }
 
@@ -78,14 +79,14 @@ void Workspace::reserve_steps(const Update& u, std::size_t groups) {
 
 Known Workspace::known(const Update& u, std::uint32_t block) const {
   Known k;
-  if (u.update) k.past = past_.data() + block * stride_;
+  if (u.update) k.previous = previous_.data() + block * stride_;
   for (unsigned axis = 0; axis < 3; ++axis) {
     const std::int32_t n = chunk.blocks[block].neighbour[axis];
     if (n == kNoBlock) continue;
     const auto at = static_cast<std::size_t>(n) * stride_;
     const bool coded = static_cast<std::uint32_t>(n) < chunk.coded;
-    k.current[axis] = (coded ? current_.data() : past_.data()) + at;
-    if (u.update) k.before[axis] = past_.data() + at;
+    k.current[axis] = (coded ? current_.data() : previous_.data()) + at;
+    if (u.update) k.before[axis] = previous_.data() + at;
   }
   return k;
 }
@@ -129,8 +130,8 @@ Group Workspace::group(const Update& u, std::size_t g) {
   group.low = u.layout.low;
   group.shared = u.layout.shared;
   group.repeats = head.repeats;
-  group.cap[0] = head.cap[0];
-  group.cap[1] = head.cap[1];
+  group.frequent[0] = head.frequent[0];
+  group.frequent[1] = head.frequent[1];
   group.reference = lanes_reference_.data();
   for (unsigned k = 0; k < kBlockCandidates; ++k) group.candidate[k] = lanes_candidate_[k].data();
   group.current = lanes_current_.data();
@@ -140,11 +141,11 @@ Group Workspace::group(const Update& u, std::size_t g) {
 
 void Workspace::load_candidates(const Update& u, std::size_t g) {
   LaneBlocks blocks[kBlockCandidates];
-  for (auto& b : blocks) b.fill(u.layout.pairs ? cap_block() : zero_block());
+  for (auto& b : blocks) b.fill(u.layout.pairs ? frequent_block() : zero_block());
   for (std::uint32_t b = chunk.group_begin[g]; b < chunk.group_begin[g + 1]; ++b) {
     const unsigned lane = b - chunk.group_begin[g];
     const Known k = known(u, b);
-    if (k.past != nullptr) blocks[0][lane] = k.past;
+    if (k.previous != nullptr) blocks[0][lane] = k.previous;
     for (unsigned axis = 0; axis < 3; ++axis) {
       if (k.current[axis] != nullptr) blocks[1 + axis][lane] = k.current[axis];
     }
@@ -203,9 +204,10 @@ void Workspace::store_current(const Update& u, std::size_t g, const Group& group
 const std::uint16_t* lane_reference(const Update& u, const Workspace& w, const Known& known,
                                     const Mode& mode, std::size_t at, std::size_t count,
                                     std::uint16_t* room) {
-  const bool cap = u.layout.pairs &&
-                   (mode.reference == Reference::cap || mode.reference == Reference::neighbours);
-  return reference_block(mode, known, at, count, cap ? w.cap_block() : w.constant_block(), room);
+  const bool frequent = u.layout.pairs && (mode.reference == Reference::frequent ||
+                                           mode.reference == Reference::neighbours);
+  return reference_block(mode, known, at, count, frequent ? w.frequent_block() : w.constant_block(),
+                         room);
 }
 
 }  // namespace gicodec::native

@@ -66,10 +66,10 @@ struct Update {
 struct ChunkHead {
   unsigned lanes = 1;  ///< power of two, at most kLanes
   bool flat = false;
-  bool repeats = false;                     ///< planes: texels say what they repeat
+  bool repeats = false;                     ///< planes: texels may repeat others
   std::uint32_t coded = UINT32_MAX;         ///< planes that vary, by bit
   std::uint16_t constant[kMaxPlanes] = {};  ///< values of the others
-  std::uint16_t cap[2] = {};                ///< pairs
+  std::uint16_t frequent[2] = {};           ///< pairs
   TableChoice tables;
 };
 
@@ -78,7 +78,7 @@ struct ChunkHead {
   return lanes == kLanes || probes < std::size_t{16} * lanes;
 }
 
-/// What an encoder knows of a group, so that nothing is searched or modelled twice.
+/// What an encoder keeps of a group, so that nothing is searched or modelled twice.
 struct Modelled {
   bool chosen = false, exact = false;
   std::uint16_t mode[2 * kLanes] = {};
@@ -120,7 +120,7 @@ class Workspace {
     return lane_blocks_.data() + lane * stride_;
   }
   [[nodiscard]] const std::uint16_t* constant_block() const { return constant_.data(); }
-  [[nodiscard]] const std::uint16_t* cap_block() const { return cap_.data(); }
+  [[nodiscard]] const std::uint16_t* frequent_block() const { return frequent_.data(); }
   [[nodiscard]] const std::uint16_t* zero_block() const { return zero_.data(); }
   [[nodiscard]] std::size_t stride() const { return stride_; }
   /// Planes up to the last one that is coded; those beyond never go into lanes.
@@ -147,8 +147,8 @@ class Workspace {
 
   std::size_t stride_ = 0;  ///< values from a block to the next
   unsigned planes_ = 0;
-  Vector<std::uint16_t> current_, past_;
-  Vector<std::uint16_t> zero_, constant_, cap_, lane_blocks_, cost_scratch_;
+  Vector<std::uint16_t> current_, previous_;
+  Vector<std::uint16_t> zero_, constant_, frequent_, lane_blocks_, cost_scratch_;
   Vector<std::uint16_t> lanes_current_, lanes_reference_, lanes_candidate_[kBlockCandidates],
       scratch_;
   Vector<Present> present_;  ///< of the group's records, if not all exist

@@ -99,12 +99,12 @@ RC_GTEST_PROP(NativeChunk, GroupsRespectNeighbours, (std::uint64_t seed)) {
 RC_GTEST_PROP(NativeChunk, FlatGroupsAreFull, (std::uint64_t seed)) {
   AnyUpdate u(seed);
   u.view.received = u.received.data();
-  const bool past = seed % 2 == 0;
+  const bool previous = seed % 2 == 0;
   std::size_t seen = 0;
   Chunk chunk;
   for (std::size_t c = 0; c < u.lists.chunk.size(); ++c) {
     const auto positions = u.positions(c);
-    chunk.build_flat(u.grid, u.box, u.probes, positions, u.mirror(), past, u.lanes);
+    chunk.build_flat(u.grid, u.box, u.probes, positions, u.mirror(), previous, u.lanes);
     RC_ASSERT(chunk.coded == positions.size());
     Vector<std::uint32_t> begins;
     for (std::uint32_t b = 0; b < chunk.coded; b += u.lanes) begins.push_back(b);
@@ -122,7 +122,7 @@ RC_GTEST_PROP(NativeChunk, FlatGroupsAreFull, (std::uint64_t seed)) {
         const std::int32_t n = block.neighbour[axis];
         const auto probe = u.neighbour(block.probe, axis);
         const bool known = probe && u.held && u.received[*probe] != 0 &&
-                           (past || !std::ranges::binary_search(u.probes, *probe));
+                           (previous || !std::ranges::binary_search(u.probes, *probe));
         RC_ASSERT((n != kNoBlock) == known);
         if (!known) continue;
         RC_ASSERT(n >= static_cast<std::int32_t>(chunk.coded));

@@ -160,7 +160,7 @@ void sort_sets(UpdateCase& update) {
   }
 }
 
-void make_past(UpdateCase& u, Random& random, bool sorted) {
+void make_previous(UpdateCase& u, Random& random, bool sorted) {
   const std::size_t size = block_bytes(u.desc), exists = presence_bytes(u.desc);
   const Record& record = u.desc.record;
   u.mirror.assign(block_count(u.desc) * size, std::byte{0});
@@ -168,21 +168,21 @@ void make_past(UpdateCase& u, Random& random, bool sorted) {
   for (std::size_t b = 0; b < u.blocks.size(); ++b) {
     const BlockPresence present(u.desc, std::span(u.presence).subspan(b * exists, exists));
     const auto now = std::span(u.records).subspan(b * size, present.count() * record.bytes);
-    const auto past = std::span(u.mirror).subspan(u.blocks[b] * size, size);
+    const auto previous = std::span(u.mirror).subspan(u.blocks[b] * size, size);
     const std::uint32_t one_in = pick(random, 2, 20);
     std::size_t to = 0;
     for (std::size_t from = 0; from < now.size() && to < size; from += record.bytes) {
       if (chance(random, one_in)) continue;
-      std::memcpy(&past[to], &now[from], record.bytes);
+      std::memcpy(&previous[to], &now[from], record.bytes);
       const std::byte* const other = &now[random() % (now.size() / record.bytes) * record.bytes];
       const Component& component = record.components[random() % record.count];
       if (chance(random, one_in)) {
-        set_code(&past[to], component, record.bytes, code_of(other, component, record.bytes));
+        set_code(&previous[to], component, record.bytes, code_of(other, component, record.bytes));
       }
-      if (chance(random, 2 * one_in)) std::memcpy(&past[to], other, record.bytes);
+      if (chance(random, 2 * one_in)) std::memcpy(&previous[to], other, record.bytes);
       to += record.bytes;
     }
-    if (sorted) sort_set(record, past.first(to));
+    if (sorted) sort_set(record, previous.first(to));
   }
 }
 

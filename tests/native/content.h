@@ -64,8 +64,8 @@ void forget_some(UpdateCase& update, Random& random);
                                     std::uint64_t seed);
 /// Puts the records of every block, which is a set, into the canonical order.
 void sort_sets(UpdateCase& update);
-/// A mirror some of whose records are still there, as they were or at their places alone.
-void make_past(UpdateCase& u, Random& random, bool sorted);
+/// A mirror some of whose records are retained, unchanged or at their places alone.
+void make_previous(UpdateCase& u, Random& random, bool sorted);
 [[nodiscard]] Bytes encode(const UpdateCase& update, const native::PayloadSettings& settings,
                            Isa isa);
 

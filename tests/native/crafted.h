@@ -1,4 +1,4 @@
-// Payloads made by hand, for tests of what decoders refuse: sound ones, and the same with one
+// Payloads made by hand, for tests of what decoders refuse: valid ones, and the same with one
 // fault.
 #pragma once
 
@@ -18,7 +18,7 @@ namespace gicodec::test {
 void expect_sound(const UpdateCase& u, const Bytes& payload);
 /// Both refuse it, the library with that status.
 void expect_refused(const UpdateCase& u, const Bytes& payload, Status status = Status::corrupt);
-/// So does who only looks at heads.
+/// So does check_payload().
 void expect_refused_at_once(const UpdateCase& u, const Bytes& payload,
                             Status status = Status::corrupt);
 

@@ -1,5 +1,5 @@
 // Every "must" of docs/native.md about heads: payloads that break one alone are refused by both
-// decoders, and without decoding where heads tell.
+// decoders, and without decoding where heads suffice.
 #include "native/crafted.h"
 
 #include <gtest/gtest.h>
@@ -166,7 +166,7 @@ TEST(NativeHead, FirstBytes) {
     if ((first & 3) == kModelledChunk) continue;
     SCOPED_TRACE(first);
     const Bytes other = with(t.payload, TwoChunks::kFirst, first);
-    // Of an adaptive chunk no more can be told.
+    // Of an adaptive chunk no more can be checked.
     first == kAdaptiveChunk ? expect_refused(t.u, other) : expect_refused_at_once(t.u, other);
   }
   for (const bool pairs : {false, true}) {
@@ -182,7 +182,7 @@ TEST(NativeHead, FirstBytes) {
       expect_refused_at_once(u, with(sound, kChunk, (first & ~0x1C) | lanes << 2));
     }
     if (!pairs) {
-      expect_refused_at_once(u, with(sound, kChunk, first | kHasHits));
+      expect_refused_at_once(u, with(sound, kChunk, first | kHasRepeats));
     }
   }
 }
@@ -363,10 +363,10 @@ TEST(NativeHead, SetsOfWhatAChunkUses) {
   const auto deep = encoded(two);
   check(two, deep.head, deep.groups, {true, true, false, true});
   auto own = encoded(visibility(false));
-  own.head.tables.hits.members = 1;
-  own.head.tables.hits.end[0][0] = 2000;
-  own.head.tables.hits.end[0][1] = 3000;
-  std::fill_n(own.head.tables.hits.map, kHitContexts, std::uint8_t{0});
+  own.head.tables.repeats.distributions = 1;
+  own.head.tables.repeats.end[0][0] = 2000;
+  own.head.tables.repeats.end[0][1] = 3000;
+  std::fill_n(own.head.tables.repeats.map, kRepeatContexts, std::uint8_t{0});
   check(visibility(false), own.head, own.groups, {true, true, false, true});
 }
 

@@ -73,7 +73,7 @@ std::vector<test::UpdateCase> cases() {
     sets.presence = Presence::count;
     all.push_back(test::make_update(sets, test::Content::noisy, keyframe, 1, 2));
     test::sort_sets(all.back());
-    if (!keyframe) test::make_past(all.back(), random, true);
+    if (!keyframe) test::make_previous(all.back(), random, true);
     for (const bool halves : {false, true}) {
       all.push_back(
           test::make_update(test::voxels(3, 2, halves), test::Content::noisy, keyframe, 1, 2));

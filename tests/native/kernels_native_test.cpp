@@ -1,6 +1,6 @@
-// The stages of the kernels: each with its inverse, and alike on every instruction set.
+// The stages of the kernels: each with its inverse, and equal on every instruction set.
 #include "native/adaptation.h"
-#include "native/member_fit.h"
+#include "native/distribution_fit.h"
 #include "native/planes.h"
 #include "support.h"
 
@@ -60,7 +60,7 @@ TEST(NativeKernels, EveryFormatUnpacksAndPacks) {
   }
 }
 
-/// Tables of every place as chunks may have them: of any sets, some with overrides or own hits.
+/// Tables of every place as chunks may have them: of any sets, some with overrides or own repeats.
 struct AnyTables {
   AnyTables(test::Random& random, bool pairs, bool update) {
     TableChoice choice;
@@ -68,29 +68,30 @@ struct AnyTables {
     for (unsigned p = 0; p < residual_places(pairs); ++p) {
       if (test::chance(random, 2)) override_place(random, choice.overrides[p]);
     }
-    if (!pairs || test::chance(random, 2)) own_hits(random, choice.hits);
+    if (!pairs || test::chance(random, 2)) own_repeats(random, choice.repeats);
     tables = adapted.apply(pairs, update, choice);
   }
   static void override_place(test::Random& random, Overrides& overrides) {
-    for (unsigned m = 0; m < kMembers; m += test::pick(random, 1, 5)) {
+    for (unsigned m = 0; m < kDistributions; m += test::pick(random, 1, 5)) {
       std::uint32_t counts[kBins] = {};
       for (unsigned i = 0; i < 9; ++i) counts[test::pick(random, 0, bin_of(0xFFFF))] += 1U << i;
-      overrides.members.push_back({static_cast<std::uint8_t>(m), fit_member(counts)});
+      overrides.distributions.push_back({static_cast<std::uint8_t>(m), fit_distribution(counts)});
     }
     for (unsigned c = 0; c < kContexts; c += test::pick(random, 1, 9)) {
       overrides.contexts.push_back(
           {static_cast<std::uint8_t>(c),
-           static_cast<std::uint8_t>(test::pick(random, 0, kMembers - 1))});
+           static_cast<std::uint8_t>(test::pick(random, 0, kDistributions - 1))});
     }
   }
-  static void own_hits(test::Random& random, OwnHits& hits) {
-    hits.members = test::pick(random, 1, kMembers);
-    for (unsigned m = 0; m < hits.members; ++m) {
-      hits.end[m][0] = static_cast<std::uint16_t>(test::pick(random, 1, 4094));
-      hits.end[m][1] = static_cast<std::uint16_t>(test::pick(random, hits.end[m][0] + 1U, 4095));
+  static void own_repeats(test::Random& random, OwnRepeats& repeats) {
+    repeats.distributions = test::pick(random, 1, kDistributions);
+    for (unsigned m = 0; m < repeats.distributions; ++m) {
+      repeats.end[m][0] = static_cast<std::uint16_t>(test::pick(random, 1, 4094));
+      repeats.end[m][1] =
+          static_cast<std::uint16_t>(test::pick(random, repeats.end[m][0] + 1U, 4095));
     }
-    for (auto& m : hits.map) {
-      m = static_cast<std::uint8_t>(test::pick(random, 0, hits.members - 1));
+    for (auto& m : repeats.map) {
+      m = static_cast<std::uint8_t>(test::pick(random, 0, repeats.distributions - 1));
     }
   }
   AdaptedTables adapted;
@@ -139,7 +140,7 @@ constexpr std::pair<bool, bool> kModels[] = {
 std::vector<Step> any_steps(test::Random& random, bool pairs, std::size_t count) {
   std::vector<Step> steps(count);
   for (auto& s : steps) {
-    s.hit = 0;
+    s.repeat = 0;
     s.active = test::chance(random, 3) ? 0xFFFFFFFFU : static_cast<std::uint32_t>(random());
     const unsigned place = test::pick(random, 0, residual_places(pairs));
     s.place = static_cast<std::uint16_t>(place == residual_places(pairs) ? kModePlace : place);
@@ -182,7 +183,7 @@ TEST(NativeKernels, StepsAreWrittenAndReadBack) {
   }
 }
 
-/// Reading beyond the words is told, whatever is read there.
+/// Reading beyond the words is detected, whatever is read there.
 TEST(NativeKernels, MissingWordsAreTold) {
   test::Random random(7);
   const AnyTables any(random, false, true);
@@ -201,7 +202,7 @@ TEST(NativeKernels, MissingWordsAreTold) {
   }
 }
 
-/// Prices are what words say, but for states and the rounding of logarithms.
+/// Prices are the bits of the words, but for states and the rounding of logarithms.
 TEST(NativeKernels, PricesAreWhatStepsTake) {
   test::Random random(4);
   for (const auto& [pairs, update] : kModels) {
@@ -241,7 +242,7 @@ struct AnyGroup {
     for (auto& kind : g.mode) {
       for (auto& mode : kind) mode = static_cast<std::uint16_t>(random() % kModes);
     }
-    for (auto& cap : g.cap) cap = static_cast<std::uint16_t>(random());
+    for (auto& frequent : g.frequent) frequent = static_cast<std::uint16_t>(random());
     const bool near = !test::chance(random, 3);
     for (auto& v : arrays) v.resize(g.planes * plane());
     for (std::size_t i = 0; i < arrays[0].size(); ++i) {
@@ -296,7 +297,7 @@ struct AnyGroup {
   std::vector<Present> present;
 };
 
-/// Each lane with contexts of its own, and hits.
+/// Each lane with contexts of its own, and repeats.
 TEST(NativeKernels, GroupsAreModelledAndDecoded) {
   test::Random random(8);
   for (const auto& [pairs, update] : kModels) {

@@ -10,20 +10,21 @@ namespace {
 
 using namespace test;
 
-TEST(NativeOwnTables, Hits) {
+TEST(NativeOwnTables, RepeatCounts) {
   const auto u = visibility(true);
   auto [head, groups] = encoded(u);
-  OwnHits& hits = head.tables.hits;
-  hits.members = 3;
+  OwnRepeats& repeats = head.tables.repeats;
+  repeats.distributions = 3;
   for (unsigned m = 0; m < 3; ++m) {
-    hits.end[m][0] = static_cast<std::uint16_t>(m == 1 ? 1 : 1000 + m);
-    hits.end[m][1] = static_cast<std::uint16_t>(m == 1 ? 4095 : 2000 + m);
+    repeats.end[m][0] = static_cast<std::uint16_t>(m == 1 ? 1 : 1000 + m);
+    repeats.end[m][1] = static_cast<std::uint16_t>(m == 1 ? 4095 : 2000 + m);
   }
-  for (unsigned c = 0; c < kHitContexts; ++c) hits.map[c] = static_cast<std::uint8_t>(c % 3);
+  for (unsigned c = 0; c < kRepeatContexts; ++c) repeats.map[c] = static_cast<std::uint8_t>(c % 3);
   const Bytes sound = payload_of(u, head, groups);
   expect_sound(u, sound);
-  constexpr std::size_t kHits = kChunk + 7, kEnds = kHits + 1, kMap = kEnds + 3 * 4;
-  for (const int members : {0, 17}) expect_refused_at_once(u, with(sound, kHits, members));
+  constexpr std::size_t kRepeatTables = kChunk + 7, kEnds = kRepeatTables + 1, kMap = kEnds + 3 * 4;
+  for (const int distributions : {0, 17})
+    expect_refused_at_once(u, with(sound, kRepeatTables, distributions));
   const auto ends = [&](unsigned m, int end0, int end1) {
     Bytes payload = sound;
     for (unsigned k = 0; k < 2; ++k) {
@@ -46,12 +47,14 @@ TEST(NativeOwnTables, Hits) {
   }
 }
 
-/// Overrides of two members and two contexts in the place `place` that change nothing: what a
-/// decoder that does not look would read.
+/// Overrides of two distributions and two contexts in the place `place` that change nothing: what a
+/// decoder that does not check would read.
 struct SameTables {
-  static constexpr std::size_t kMember = 18;  ///< number, form, 14 units, that of the escape
+  static constexpr std::size_t kDistribution =
+      18;  ///< number, fields, 14 units, that of the escape
   static constexpr std::size_t kNumber = 1, kForm = 2, kUnits = 4, kEscapeUnits = 18,
-                               kSecond = kNumber + kMember, kContextCount = kSecond + kMember,
+                               kSecond = kNumber + kDistribution,
+                               kContextCount = kSecond + kDistribution,
                                kEntries = kContextCount + 2;
   UpdateCase u;
   Bytes payload;
@@ -76,12 +79,12 @@ struct SameTables {
       const unsigned role = role_of(layout.pairs, !u.keyframe, p);
       const auto& map = role_tables(role, 0).map;
       writer.bytes(bytes({2}));
-      for (const unsigned m : {2U, 9U}) write_whole(writer, m, member_of(role, 0, m));
+      for (const unsigned m : {2U, 9U}) write_whole(writer, m, distribution_of(role, 0, m));
       writer.bytes(bytes({2, 0, 10, map[10], 200, map[200]}));
     }
     writer.bytes(std::span(plain).subspan(rest));
   }
-  static void write_whole(ByteWriter& writer, unsigned number, const Member& m) {
+  static void write_whole(ByteWriter& writer, unsigned number, const Distribution& m) {
     writer.fixed(static_cast<std::uint8_t>(number));
     writer.fixed(static_cast<std::uint16_t>(m.shift | m.unit << 3 | kEscape << 6));
     for (const auto units : m.units) writer.fixed(units);
@@ -116,7 +119,7 @@ TEST(NativeOwnTables, Overrides) {
       refused(S::kContextCount + 1, 2);
       refused(S::kEntries + 2, 10);  // the same twice
       refused(S::kEntries + 2, 9);   // descending
-      for (const int member : {16, 255}) refused(S::kEntries + 1, member);
+      for (const int distribution : {16, 255}) refused(S::kEntries + 1, distribution);
       // More than there are contexts, whatever they are.
       Bytes many = s.damaged(S::kContextCount + 1, 1);
       many.insert(many.begin() + static_cast<std::ptrdiff_t>(s.begin + S::kEntries), 510,
@@ -128,18 +131,18 @@ TEST(NativeOwnTables, Overrides) {
 }
 
 /// Sums of units up to 255 are taken, one more is not.
-TEST(NativeOwnTables, UnitsOfAMember) {
+TEST(NativeOwnTables, UnitsOfADistribution) {
   const auto u = colour(true);
   auto [head, groups] = encoded(u);
-  Member m{4, 0, {}};
+  Distribution m{4, 0, {}};
   std::fill(std::begin(m.units), std::end(m.units), std::uint8_t{17});
-  for (std::uint8_t number = 0; number < kMembers; ++number) {
-    head.tables.overrides[0].members.push_back({number, m});
+  for (std::uint8_t number = 0; number < kDistributions; ++number) {
+    head.tables.overrides[0].distributions.push_back({number, m});
   }
   const Bytes sound = payload_of(u, head, groups);
   expect_sound(u, sound);
   for (unsigned s = 0; s < kListed; ++s) {
-    const std::size_t last = kChunk + 6 + 1 + 15 * SameTables::kMember + 3 + s;
+    const std::size_t last = kChunk + 6 + 1 + 15 * SameTables::kDistribution + 3 + s;
     ASSERT_EQ(at(sound, last), 17);
     expect_refused_at_once(u, with(sound, last, 18));
   }

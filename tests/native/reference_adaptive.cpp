@@ -12,9 +12,9 @@ namespace {
 
 class Sets {
  public:
-  Sets(const TextureDesc& desc, Learner& learner)
+  Sets(const TextureDesc& desc, BitModels& models)
       : record_(desc.record),
-        learn_(learner),
+        models_(models),
         axes_(std::min<unsigned>(3, record_.count)),
         lists_(axes_),
         leaves_(3, Components(axes_, 0)),
@@ -22,25 +22,25 @@ class Sets {
         before_that_(record_.count, 0),
         differences_(record_.count, 0) {}
 
-  bool block(std::size_t n, const std::vector<std::byte>& past, std::vector<Components>& out) {
+  bool block(std::size_t n, const std::vector<std::byte>& previous, std::vector<Components>& out) {
     if (n == 0) return true;
-    if (past.empty()) return set(n, out);
+    if (previous.empty()) return set(n, out);
     std::vector<Components> records;
-    for (std::size_t at = 0; at < past.size(); at += record_.bytes) {
-      records.push_back(unpacked(record_, past.data() + at));
+    for (std::size_t at = 0; at < previous.size(); at += record_.bytes) {
+      records.push_back(unpacked(record_, previous.data() + at));
     }
-    if (learn_.flag(2, {{3, 0}, {3, 1}, {3, 2}})) {
+    if (models_.flag(2, {{3, 0}, {3, 1}, {3, 2}})) {
       out.assign(records.begin(), records.begin() + static_cast<std::ptrdiff_t>(n));
       return true;
     }
-    if (!learn_.flag(3, {{4, 0}, {4, 1}, {4, 2}})) return set(n, out);
+    if (!models_.flag(3, {{4, 0}, {4, 1}, {4, 2}})) return set(n, out);
     return paired(n, records, out);
   }
 
  private:
   bool set(std::size_t n, std::vector<Components>& out) {
     if (n == 0) return true;
-    if (!learn_.flag(0, {{1, 0}, {1, 1}, {1, 2}})) {
+    if (!models_.flag(0, {{1, 0}, {1, 1}, {1, 2}})) {
       for (std::size_t i = 0; i < n; ++i) {
         Components values(record_.count, 0);
         others(values, 0, 0, 0);
@@ -49,8 +49,8 @@ class Sets {
       return true;
     }
     std::size_t zeros = 0;
-    if (learn_.flag(1, {{2, 0}, {2, 1}, {2, 2}})) {
-      zeros = learn_.source().plain(16);
+    if (models_.flag(1, {{2, 0}, {2, 1}, {2, 2}})) {
+      zeros = models_.source().bypass(16);
       if (zeros < 1 || zeros > n) return false;
     }
     if (n > zeros && !bisect({static_cast<Number>(n - zeros), Components(axes_, 0),
@@ -79,34 +79,34 @@ class Sets {
   }
 
   bool paired(std::size_t n, const std::vector<Components>& mirror, std::vector<Components>& out) {
-    struct Survivor {
+    struct Retained {
       Components record;
       bool changed;
     };
-    std::vector<Survivor> survivors;
-    for (std::size_t i = 0; i < mirror.size() && !zero(mirror[i]) && survivors.size() < n; ++i) {
-      if (learn_.source().missing()) return false;
-      const auto told = [&](Number k) {
-        return learn_.flag(4 + 4 * k + fates_ % 4, {{H({5 + 55 * k}), fates_ % 4},
-                                                    {H({6 + 55 * k, fates_ % 256}), 0},
-                                                    {H({7 + 55 * k, fates_ % 4096}), 0}});
+    std::vector<Retained> retained;
+    for (std::size_t i = 0; i < mirror.size() && !zero(mirror[i]) && retained.size() < n; ++i) {
+      if (models_.source().missing()) return false;
+      const auto flag = [&](Number k) {
+        return models_.flag(4 + 4 * k + states_ % 4, {{H({5 + 55 * k}), states_ % 4},
+                                                      {H({6 + 55 * k, states_ % 256}), 0},
+                                                      {H({7 + 55 * k, states_ % 4096}), 0}});
       };
-      const bool kept = told(0), changed = !kept && told(1);
-      fates_ = (4 * fates_ + (kept ? 0 : changed ? 1 : 2)) % 4096;
-      if (kept || changed) survivors.push_back({mirror[i], changed});
+      const bool kept = flag(0), changed = !kept && flag(1);
+      states_ = (4 * states_ + (kept ? 0 : changed ? 1 : 2)) % 4096;
+      if (kept || changed) retained.push_back({mirror[i], changed});
     }
     std::vector<Components> fresh;
-    if (!set(n - survivors.size(), fresh)) return false;
-    for (Survivor& survivor : survivors) {
-      if (learn_.source().missing()) return false;
-      if (survivor.changed) change(survivor.record);
+    if (!set(n - retained.size(), fresh)) return false;
+    for (Retained& one : retained) {
+      if (models_.source().missing()) return false;
+      if (one.changed) change(one.record);
     }
     auto next = fresh.begin();
-    for (const Survivor& survivor : survivors) {
-      while (next != fresh.end() && !zero(*next) && before(*next, survivor.record)) {
+    for (const Retained& one : retained) {
+      while (next != fresh.end() && !zero(*next) && before(*next, one.record)) {
         out.push_back(*next++);
       }
-      out.push_back(survivor.record);
+      out.push_back(one.record);
     }
     out.insert(out.end(), next, fresh.end());
     return true;
@@ -115,17 +115,17 @@ class Sets {
   void change(Components& record) {
     Number q = 1;
     for (unsigned c = axes_; c < record_.count; ++c) {
-      const Number past = record[c], last = differences_[c];
-      const bool same = learn_.flag(
+      const Number previous = record[c], last = differences_[c];
+      const bool same = models_.flag(
           176 + c, {{H({230 + c}), 0}, {H({246 + c, q % 256}), 0}, {H({262 + c, last}), 0}});
       q = 2 * q + (same ? 0 : 1);
       if (same) continue;
-      const Number z = learn_.value(16 + c,
-                                    {H({278 + c, 0}), H({294 + c, last}), H({310 + c, past}),
-                                     H({326 + c, past, last}), H({342 + c, q})},
-                                    bits(c));
+      const Number z = models_.value(16 + c,
+                                     {H({278 + c, 0}), H({294 + c, last}), H({310 + c, previous}),
+                                      H({326 + c, previous, last}), H({342 + c, q})},
+                                     bits(c));
       const Number difference = z % 2 == 0 ? z / 2 : -((z + 1) / 2);
-      record[c] = (past + difference) & mask_of(bits(c));
+      record[c] = (previous + difference) & mask_of(bits(c));
       differences_[c] = z;
     }
   }
@@ -158,7 +158,7 @@ class Sets {
   }
 
   bool bisect(Node node, std::vector<Components>& out) {
-    if (learn_.source().missing()) return false;
+    if (models_.source().missing()) return false;
     int axis = -1;
     for (unsigned i = 0; i < axes_ && axis < 0; ++i) {
       const unsigned a = (node.next + i) % axes_;
@@ -170,9 +170,9 @@ class Sets {
     const Number c = node.n < 8 ? node.n : 8 + std::min(7U, width_of(node.n) - 4);
     const Number match =
         std::ranges::any_of(lists_[a], [&](Number x) { return begins(x, node, a); }) ? 1 : 0;
-    if (learn_.flag(16 + 16 * a + c, {{H({10 + a, k}), c},
-                                      {H({13 + a, 2 * node.shared + match}), c},
-                                      {H({16 + a, node.history}), match}})) {
+    if (models_.flag(16 + 16 * a + c, {{H({10 + a, k}), c},
+                                       {H({13 + a, 2 * node.shared + match}), c},
+                                       {H({16 + a, node.history}), match}})) {
       if (!coordinate(node, a)) put(a, node.place[a]);
       node.shared |= 1U << a;
       return bisect(node, out);
@@ -182,13 +182,13 @@ class Sets {
     const Number s = 4 * side(0, a, node.place[a], k) + side(1, a, node.place[a], k);
     Number m = 1;
     for (unsigned b = d; b < w; ++b) {
-      const bool bit = learn_.flag({'c', d > 0 ? 63 : t, std::min<Number>(m, 15)},
-                                   {{H({40, d, t, s, m >> 4}), m % 16},
-                                    {H({41, d, t, std::min(k, 8U), m >> 4}), m % 16},
-                                    {H({42, d, t, node.history, m >> 4}), m % 16}});
+      const bool bit = models_.flag({'c', d > 0 ? 63 : t, std::min<Number>(m, 15)},
+                                    {{H({40, d, t, s, m >> 4}), m % 16},
+                                     {H({41, d, t, std::min(k, 8U), m >> 4}), m % 16},
+                                     {H({42, d, t, node.history, m >> 4}), m % 16}});
       m = 2 * m + (bit ? 1 : 0);
     }
-    const Number l = ((m - (Number{1} << (w - d))) << d) + learn_.source().plain(d);
+    const Number l = ((m - (Number{1} << (w - d))) << d) + models_.source().bypass(d);
     if (l > node.n) return false;
     Node low = node;
     low.known[a] = k + 1;
@@ -210,10 +210,10 @@ class Sets {
     const auto list = lists_[a];
     for (std::size_t i = 0; i < list.size() && r < 4; ++i) {
       if (!begins(list[i], node, a)) continue;
-      if (learn_.flag(64 + (one ? 16 : 0) + 4 * r + a,
-                      {{H({20 + leaf + a, 0}), r},
-                       {H({26 + leaf + a, b - k}), r},
-                       {H({32 + leaf + a, static_cast<Number>(i), node.shared}), r}})) {
+      if (models_.flag(64 + (one ? 16 : 0) + 4 * r + a,
+                       {{H({20 + leaf + a, 0}), r},
+                        {H({26 + leaf + a, b - k}), r},
+                        {H({32 + leaf + a, static_cast<Number>(i), node.shared}), r}})) {
         node.place[a] = list[i];
         put(a, list[i]);
         return true;
@@ -224,13 +224,13 @@ class Sets {
     unsigned known = k;
     for (unsigned j = 0; one && j < 3 && known < b; ++j, ++known) {
       const Number s0 = side(0, a, p, known), s1 = side(1, a, p, known), s2 = side(2, a, p, known);
-      if (learn_.flag(128 + 8 * a + j, {{H({50 + a, j, node.shared}), 4 * s0 + s1},
-                                        {H({53 + a, j, s0}), 4 * s1 + s2},
-                                        {H({56 + a, j, known}), s0}})) {
+      if (models_.flag(128 + 8 * a + j, {{H({50 + a, j, node.shared}), 4 * s0 + s1},
+                                         {H({53 + a, j, s0}), 4 * s1 + s2},
+                                         {H({56 + a, j, known}), s0}})) {
         p += Number{1} << (31 - known);
       }
     }
-    p += Number{learn_.source().plain(b - known)} << (32 - b);
+    p += Number{models_.source().bypass(b - known)} << (32 - b);
     node.place[a] = p;
     return false;
   }
@@ -249,7 +249,7 @@ class Sets {
     leaves_.insert(leaves_.begin(), node.place);
     leaves_.pop_back();
     for (Number i = 0; i < node.n; ++i) {
-      if (learn_.source().missing()) return false;
+      if (models_.source().missing()) return false;
       Components values(record_.count, 0);
       for (unsigned a = 0; a < axes_; ++a) values[a] = node.place[a] >> (32 - bits(a));
       others(values, axes_, plane, cell);
@@ -267,16 +267,16 @@ class Sets {
       const Number o = c >= first + 1 ? highest(c - 1, values[c - 1], 12) : 0;
       const Number o2 = c >= first + 2 ? highest(c - 2, values[c - 2], 12) : 0;
       const Number f = c >= first + 1 ? highest(c - 1, values[c - 1], 4) : 0;
-      if (bits(c) > 16 && learn_.flag(160 + c, {{100 + c, before == before_that_[c] ? 1 : 0},
-                                                {H({116 + c, f}), 0},
-                                                {H({132 + c, plane}), 0}})) {
+      if (bits(c) > 16 && models_.flag(160 + c, {{100 + c, before == before_that_[c] ? 1 : 0},
+                                                 {H({116 + c, f}), 0},
+                                                 {H({132 + c, plane}), 0}})) {
         values[c] = before;
       } else {
-        values[c] =
-            learn_.value(c,
-                         {H({150 + c, 0}), H({166 + c, o, o2}), H({182 + c, highest(c, before, 9)}),
-                          H({198 + c, plane, f}), H({214 + c, cell, f})},
-                         bits(c));
+        values[c] = models_.value(
+            c,
+            {H({150 + c, 0}), H({166 + c, o, o2}), H({182 + c, highest(c, before, 9)}),
+             H({198 + c, plane, f}), H({214 + c, cell, f})},
+            bits(c));
       }
       before_that_[c] = before;
       before_[c] = values[c];
@@ -284,12 +284,12 @@ class Sets {
   }
 
   const gicodec::Record& record_;
-  Learner& learn_;
+  BitModels& models_;
   unsigned axes_;
   std::vector<std::vector<Number>> lists_;
   std::vector<Components> leaves_;
   Components before_, before_that_;
-  Number fates_ = 0;
+  Number states_ = 0;
   Components differences_;
 };
 
@@ -299,23 +299,23 @@ std::optional<std::vector<std::vector<std::byte>>> decode_adaptive(
     const TextureDesc& desc, const std::vector<AdaptiveBlock>& blocks, const HeldBlocks& held,
     const std::vector<HeldBrick>& bricks, std::span<const std::byte> stream) {
   BitSource source(stream);
-  Learner learner(source);
+  BitModels models(source);
   std::vector<std::vector<std::byte>> out;
   if (desc.model == Model::unordered) {
-    Sets sets(desc, learner);
+    Sets sets(desc, models);
     for (const AdaptiveBlock& block : blocks) {
       std::vector<Components> records;
       const auto n = static_cast<std::size_t>(std::ranges::count(block.exists, true));
-      if (!sets.block(n, block.past, records) || source.missing()) return {};
+      if (!sets.block(n, block.previous, records) || source.missing()) return {};
       records.resize(block.exists.size(), Components(desc.record.count, 0));
       out.push_back(packed(desc.record, records));
     }
   } else if (is_voxels(desc)) {
-    out = decode_voxels(desc, blocks, bricks, learner);
+    out = decode_voxels(desc, blocks, bricks, models);
   } else if (desc.model == Model::hemispheres) {
-    out = decode_vectors(desc, blocks, held, learner);
+    out = decode_vectors(desc, blocks, held, models);
   } else {
-    out = decode_records(desc, blocks, learner);
+    out = decode_records(desc, blocks, models);
   }
   if (!source.finished()) return {};
   return out;

@@ -13,14 +13,14 @@
 
 namespace gicodec::reference {
 
-/// A block of an adaptive chunk: which of its records exist, its past, empty in keyframes, and
-/// where it is in the grid.
+/// A block of an adaptive chunk: which of its records exist, its mirror block, empty in keyframes,
+/// and where it is in the grid.
 struct AdaptiveBlock {
   std::vector<bool> exists;
-  std::vector<std::byte> past;
+  std::vector<std::byte> previous;
   std::array<std::uint32_t, 3> place{};
   /// Of bricks: their presence, and that which the mirror's have; empty if there are none.
-  std::vector<std::byte> presence{}, past_presence{};
+  std::vector<std::byte> presence{}, previous_presence{};
 };
 
 /// A brick of the mirror that is not in the update.

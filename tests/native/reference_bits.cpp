@@ -28,7 +28,7 @@ Number stretch(Number p) {
 
 }  // namespace
 
-Learner::Mixed Learner::mixed(const Mixer& mixer, const std::vector<F>& by) {
+BitModels::Mixed BitModels::mixed(const Mixer& mixer, const std::vector<F>& by) {
   auto& weights = mixers_[mixer];
   const auto n = static_cast<Number>(by.size());
   if (weights.empty()) weights.assign(by.size(), 5 * 65536 / (4 * n));
@@ -36,8 +36,8 @@ Learner::Mixed Learner::mixed(const Mixer& mixer, const std::vector<F>& by) {
   std::vector<Number> s;
   Number x = 0;
   for (std::size_t i = 0; i < by.size(); ++i) {
-    const Word line = by[i].h * 0xC2B2AE35U >> 18;
-    counters.push_back(&counters_[line * 16 + static_cast<std::size_t>(by[i].i)]);
+    const Word bucket = by[i].h * 0xC2B2AE35U >> 18;
+    counters.push_back(&counters_[bucket * 16 + static_cast<std::size_t>(by[i].i)]);
     s.push_back(stretch(counters.back()->p));
     x += s.back() * weights[i];
   }
@@ -53,21 +53,21 @@ Learner::Mixed Learner::mixed(const Mixer& mixer, const std::vector<F>& by) {
   return {bit, q};
 }
 
-Word Learner::value(unsigned way, const std::array<Word, 5>& hashes, unsigned bits) {
+Word BitModels::value(unsigned channel, const std::array<Word, 5>& hashes, unsigned bits) {
   std::uint64_t y = 1;
   for (unsigned done = 0, k = 0; done < bits; ++k) {
     const unsigned w = bits - done < 4 ? bits - done : 4;
-    Noise& noise = noise_[{way, k}];
+    Noise& noise = noise_[{channel, k}];
     if (noise.rest > 0) {
       --noise.rest;
-      y = y << w | source_.plain(w);
+      y = y << w | source_.bypass(w);
     } else {
       Word m = 1;
       Number t = 0;
       for (unsigned b = 0; b < w; ++b) {
         std::vector<F> by;
         for (const Word h : hashes) by.push_back({H({h, static_cast<Number>(y)}), m});
-        const auto [bit, q] = mixed({'v', way, done + b}, by);
+        const auto [bit, q] = mixed({'v', channel, done + b}, by);
         t += bit ? q - 32768 : 32768 - q;
         m = m << 1 | (bit ? 1U : 0U);
       }
@@ -80,28 +80,28 @@ Word Learner::value(unsigned way, const std::array<Word, 5>& hashes, unsigned bi
   return static_cast<Word>(y - (std::uint64_t{1} << bits));
 }
 
-Number Learner::number(unsigned way, const std::array<Word, 5>& hashes,
-                       const std::vector<F>& sign) {
+Number BitModels::number(unsigned channel, const std::array<Word, 5>& hashes,
+                         const std::vector<F>& sign) {
   unsigned width = 0;
   while (width < 32) {
     std::vector<F> by;
     for (const Word h : hashes) by.push_back({H({h, width - width % 16}), width % 16});
-    if (!flag({'w', way, width}, by)) break;
+    if (!flag({'w', channel, width}, by)) break;
     ++width;
   }
   if (width == 0) return 0;
-  const bool negative = flag(224 + way, sign);
+  const bool negative = flag(224 + channel, sign);
   Number m = 1;
   for (unsigned left = width - 1, k = 0; left > 0;) {
     if (k < 3) {
-      const bool bit = flag({'d', way, k}, {{H({99, way, width}), m},
-                                            {H({hashes[0], 99, width}), m},
-                                            {H({hashes[1], 99, width}), m}});
+      const bool bit = flag({'d', channel, k}, {{H({99, channel, width}), m},
+                                                {H({hashes[0], 99, width}), m},
+                                                {H({hashes[1], 99, width}), m}});
       m = m * 2 + (bit ? 1 : 0);
       ++k;
       --left;
     } else {
-      m = (m << left) | source_.plain(left);
+      m = (m << left) | source_.bypass(left);
       left = 0;
     }
   }

@@ -52,7 +52,7 @@ class BitSource {
     fill();
     return one;
   }
-  Word plain(unsigned n) {
+  Word bypass(unsigned n) {
     Word value = 0;
     while (n > 0) {
       const unsigned s = n < 8 ? n : 8;
@@ -96,10 +96,10 @@ struct F {
   Number i;
 };
 
-/// Everything that learns in a chunk.
-class Learner {
+/// All adaptive state of a chunk.
+class BitModels {
  public:
-  Learner(BitSource& source) : source_(source) {}
+  BitModels(BitSource& source) : source_(source) {}
 
   struct Mixed {
     bool bit;
@@ -109,8 +109,8 @@ class Learner {
   Mixed mixed(const Mixer& mixer, const std::vector<F>& by);
   bool flag(const Mixer& mixer, const std::vector<F>& by) { return mixed(mixer, by).bit; }
   bool flag(Number mixer, const std::vector<F>& by) { return mixed({'f', mixer, 0}, by).bit; }
-  Word value(unsigned way, const std::array<Word, 5>& hashes, unsigned bits);
-  Number number(unsigned way, const std::array<Word, 5>& hashes, const std::vector<F>& sign);
+  Word value(unsigned channel, const std::array<Word, 5>& hashes, unsigned bits);
+  Number number(unsigned channel, const std::array<Word, 5>& hashes, const std::vector<F>& sign);
   BitSource& source() { return source_; }
 
  private:
@@ -121,7 +121,7 @@ class Learner {
     Number gain = 8192, rest = 0;
   };
   BitSource& source_;
-  std::unordered_map<std::size_t, Counter> counters_;  ///< those that were asked for
+  std::unordered_map<std::size_t, Counter> counters_;  ///< those in use
   std::map<Mixer, std::vector<Number>> mixers_;
   std::map<std::pair<unsigned, unsigned>, Noise> noise_;
 };

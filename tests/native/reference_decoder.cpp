@@ -180,7 +180,7 @@ class Decoder {
            : desc_.presence == Presence::mask ? (records_ + 7) / 8
                                               : 8 + (records_ / 6 + 7) / 8;
   }
-  /// What is said of a block of the update.
+  /// The presence of a block of the update.
   [[nodiscard]] std::span<const std::byte> said_of(std::uint32_t block) const {
     const auto place =
         static_cast<std::size_t>(std::ranges::lower_bound(blocks_, block) - blocks_.begin());
@@ -238,7 +238,7 @@ class Decoder {
                             bool flat) const {
     Surroundings s;
     s.exists = exists(block);
-    if (update()) s.past = unpack(mirror_.data() + block * block_bytes_);
+    if (update()) s.previous = unpack(mirror_.data() + block * block_bytes_);
     if (flat && !pairs()) return s;
     for (unsigned axis = 0; axis < 3; ++axis) {
       const auto n = neighbour(block, axis);
@@ -324,15 +324,15 @@ class Decoder {
     for (const auto block : blocks) {
       AdaptiveBlock one{exists(block), {}, coordinates(block)};
       if (update()) {
-        const auto past = mirror_.subspan(block * block_bytes_, block_bytes_);
-        one.past.assign(past.begin(), past.end());
+        const auto previous = mirror_.subspan(block * block_bytes_, block_bytes_);
+        one.previous.assign(previous.begin(), previous.end());
       }
       if (desc_.presence == Presence::brick) {
         const auto said = said_of(block);
         one.presence.assign(said.begin(), said.end());
         if (update() && !held_presence_.empty() && received_[block] != 0) {
           const auto held = held_presence_.subspan(block * said_bytes(), said_bytes());
-          one.past_presence.assign(held.begin(), held.end());
+          one.previous_presence.assign(held.begin(), held.end());
         }
       }
       all.push_back(std::move(one));
@@ -385,16 +385,16 @@ class Decoder {
   }
 
   bool read_head(Bytes& in, unsigned first, Head& head) const {
-    const bool hits_follow = (first & 128) != 0, overrides_follow = (first & 32) != 0;
+    const bool repeats_follow = (first & 128) != 0, overrides_follow = (first & 32) != 0;
     Sets sets;
-    head.repeats = hits_follow && !pairs();
+    head.repeats = repeats_follow && !pairs();
     const bool partial = desc_.presence != Presence::all;
     if (!read_sets(in, sets) || (head.repeats && ((first & 64) != 0 || partial || head.mantissas)))
       return false;
     std::array<bool, 4> used = {};
     if (pairs()) {
-      for (auto& cap : head.cap) cap = static_cast<int>(in.u16());
-      used = {true, true, !hits_follow, update()};
+      for (auto& frequent : head.frequent) frequent = static_cast<int>(in.u16());
+      used = {true, true, !repeats_follow, update()};
     } else {
       used[3] = true;
       std::uint64_t coded = 0;
@@ -411,10 +411,10 @@ class Decoder {
       if (!used[i] && sets[i] != 0) return false;
     }
     head.tables = tables_of(sets, pairs(), update());
-    if (hits_follow && !read_hits(in, head.tables.hits)) return false;
+    if (repeats_follow && !read_repeat_tables(in, head.tables.repeats)) return false;
     const auto roles = std::span(head.tables.planes).first(pairs() ? 2 : 3);
-    return !in.failed() && (!overrides_follow || std::ranges::all_of(roles, [&](auto& family) {
-      return read_overrides(in, family);
+    return !in.failed() && (!overrides_follow || std::ranges::all_of(roles, [&](auto& tables) {
+      return read_overrides(in, tables);
     }));
   }
 

@@ -22,7 +22,7 @@ struct Head {
   [[nodiscard]] std::size_t place(std::size_t plane) const;
   std::vector<bool> coded;
   std::vector<int> constant;
-  std::array<int, 2> cap{};
+  std::array<int, 2> frequent{};
   Tables tables;
 };
 
@@ -30,7 +30,7 @@ struct Head {
 /// decoded.
 struct Surroundings {
   std::vector<bool> exists;
-  std::optional<Values> past, now[3], before[3];
+  std::optional<Values> previous, now[3], before[3];
 };
 
 /// One group; blocks in lanes.

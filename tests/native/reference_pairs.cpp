@@ -1,32 +1,32 @@
-#include "native/reference_look.h"
+#include "native/reference_context.h"
 
 namespace gicodec::reference {
 namespace {
 
-constexpr Mode kPairUpdate[2][8] = {{{kPast, "", 2, 2, 0, 0, 0, 0},
-                                     {kPast, "", 6, 6, -4, 0, 0, 1},
-                                     {kPast, "", 0, 0, 0, 0, 0, 2},
-                                     {kPast, "", 4, 2, 0, 2, 0, 0},
-                                     {kPastChange, "X", 2, 1, 0, 1, 0, 3},
-                                     {kPastChange, "Y", 2, 1, 0, 1, 0, 3},
-                                     {kPastChange, "Z", 2, 1, 0, 1, 0, 3},
-                                     {kCap, "", 6, 6, -4, 0, 0, 1}},
-                                    {{kPast, "", 2, 1, 0, 1, 0, 0},
-                                     {kPast, "", 0, 0, 0, 0, 0, 1},
-                                     {kPast, "", 4, 2, 0, 2, 0, 0},
-                                     {kPast, "", 2, 2, 0, 0, 0, 0},
+constexpr Mode kPairUpdate[2][8] = {{{kPrevious, "", 2, 2, 0, 0, 0, 0},
+                                     {kPrevious, "", 6, 6, -4, 0, 0, 1},
+                                     {kPrevious, "", 0, 0, 0, 0, 0, 2},
+                                     {kPrevious, "", 4, 2, 0, 2, 0, 0},
+                                     {kPreviousChange, "X", 2, 1, 0, 1, 0, 3},
+                                     {kPreviousChange, "Y", 2, 1, 0, 1, 0, 3},
+                                     {kPreviousChange, "Z", 2, 1, 0, 1, 0, 3},
+                                     {kFrequent, "", 6, 6, -4, 0, 0, 1}},
+                                    {{kPrevious, "", 2, 1, 0, 1, 0, 0},
+                                     {kPrevious, "", 0, 0, 0, 0, 0, 1},
+                                     {kPrevious, "", 4, 2, 0, 2, 0, 0},
+                                     {kPrevious, "", 2, 2, 0, 0, 0, 0},
                                      {kConstant, "", 2, 2, 0, 0, 0, 2},
-                                     {kPastChange, "XYZ", 0, 0, 0, 0, 0, 3},
-                                     {kPastChange, "Y", 0, 0, 0, 0, 0, 3},
+                                     {kPreviousChange, "XYZ", 0, 0, 0, 0, 0, 3},
+                                     {kPreviousChange, "Y", 0, 0, 0, 0, 0, 3},
                                      {kAverage, "Z", 2, 2, 0, 0, 0, 2}}};
-constexpr Mode kPairKey[2][8] = {{{kCap, "", 6, 6, -4, 0, 0, 0},
+constexpr Mode kPairKey[2][8] = {{{kFrequent, "", 6, 6, -4, 0, 0, 0},
                                   {kAverage, "X", 6, 6, -4, 0, 0, 0},
                                   {kAverage, "Y", 6, 6, -4, 0, 0, 0},
                                   {kAverage, "Z", 6, 6, -4, 0, 0, 0},
                                   {kAverage, "X", 2, 2, 0, 0, 0, 0},
                                   {kAverage, "Y", 2, 2, 0, 0, 0, 0},
                                   {kAverage, "Z", 2, 2, 0, 0, 0, 0},
-                                  {kCap, "", 2, 1, 0, 1, 0, 0}},
+                                  {kFrequent, "", 2, 1, 0, 1, 0, 0}},
                                  {{kConstant, "", 2, 1, 0, 1, 0, 0},
                                   {kConstant, "", 8, 8, -8, 0, 0, 0},
                                   {kConstant, "", 2, 2, 0, 0, 0, 0},
@@ -50,28 +50,28 @@ struct PairBlock {
 };
 using Pair = std::array<int, 2>;
 
-struct Forecast {
+struct PlanePrediction {
   int reference[2], prediction[2];
   int key_reference[16], key_prediction[16];
 };
 
-Forecast predict(const Head& head, const Surroundings& s, const PairBlock& b,
-                 const unsigned (&modes)[2], int i, int j) {
+PlanePrediction predict(const Head& head, const Surroundings& s, const PairBlock& b,
+                        const unsigned (&modes)[2], int i, int j) {
   const int columns = static_cast<int>(head.columns);
   const Around a = around(columns, i, j);
   const auto t = static_cast<std::size_t>(j * columns + i);
-  Forecast f{};
+  PlanePrediction f{};
   for (std::size_t p = 0; p < 2; ++p) {
     if (head.update) {
       const Mode& m = kPairUpdate[p][modes[p]];
-      f.reference[p] = source(m, s, p, t, 0, head.cap[p]);
+      f.reference[p] = source(m, s, p, t, 0, head.frequent[p]);
       f.prediction[p] = word(f.reference[p] + operate(m, b.d[p], a, true));
       continue;
     }
     int least = -1;
     for (std::size_t m = 0; m < 8; ++m) {
       const std::size_t k = 8 * p + m;
-      f.key_reference[k] = source(kPairKey[p][m], s, p, t, 0, head.cap[p]);
+      f.key_reference[k] = source(kPairKey[p][m], s, p, t, 0, head.frequent[p]);
       f.key_prediction[k] = word(f.key_reference[k] + operate(kPairKey[p][m], b.key_d[k], a, true));
       int left = look(b.key_e[k], a).energy;
       if (i >= 2 && j > 0) left = capped(left + std::abs(b.key_e[k][t - 2]));
@@ -89,8 +89,8 @@ Forecast predict(const Head& head, const Surroundings& s, const PairBlock& b,
 std::array<Pair, 7> candidates(const Head& head, const Surroundings& s, const PairBlock& b,
                                const Around& a, std::size_t t) {
   std::array<Pair, 7> c;
-  c.fill({head.cap[0], head.cap[1]});
-  if (s.past) c[0] = {(*s.past)[0][t], (*s.past)[1][t]};
+  c.fill({head.frequent[0], head.frequent[1]});
+  if (s.previous) c[0] = {(*s.previous)[0][t], (*s.previous)[1][t]};
   for (std::size_t k = 0; k < 3; ++k) {
     if (s.now[k]) c[1 + k] = {(*s.now[k])[0][t], (*s.now[k])[1][t]};
   }
@@ -99,18 +99,18 @@ std::array<Pair, 7> candidates(const Head& head, const Surroundings& s, const Pa
   return c;
 }
 
-struct Guess {
+struct BestCandidates {
   Pair first, second;
   int context;
 };
-Guess guess(const std::array<Pair, 7>& c, const PairBlock& b, const Around& a) {
+BestCandidates rank_candidates(const std::array<Pair, 7>& c, const PairBlock& b, const Around& a) {
   int score[7] = {};
   for (std::size_t k = 0; k < 7 && a.w >= 0; ++k) {
     const auto m = [&](int t) { return b.matched[static_cast<std::size_t>(t)][k] ? 1 : 0; };
     score[k] = 4 * m(a.w) + 3 * m(a.n) + 2 * m(a.ne) + m(a.nw);
   }
   const auto best = static_cast<std::size_t>(std::max_element(score, score + 7) - score);
-  Guess g{c[best], c[best], 0};
+  BestCandidates g{c[best], c[best], 0};
   int votes = -1, second = -1;
   for (std::size_t k = 0; k < 7; ++k) {
     if (c[k] == c[best]) {
@@ -144,23 +144,23 @@ std::optional<std::vector<Values>> decode_pairs(const Head& head,
     for (int i = 0; i < columns; ++i) {
       const Around a = around(columns, i, j);
       const auto t = static_cast<std::size_t>(j * columns + i);
-      std::vector<Forecast> forecast;
+      std::vector<PlanePrediction> predicted;
       std::vector<std::array<Pair, 7>> candidate;
-      std::vector<Guess> guesses;
-      std::vector<int> hit_context;
+      std::vector<BestCandidates> best;
+      std::vector<int> repeat_context;
       for (std::size_t l = 0; l < lanes; ++l) {
         const unsigned m[2] = {modes[0][l], modes[1][l]};
-        forecast.push_back(predict(head, blocks[l], state[l], m, i, j));
+        predicted.push_back(predict(head, blocks[l], state[l], m, i, j));
         candidate.push_back(candidates(head, blocks[l], state[l], a, t));
-        guesses.push_back(guess(candidate[l], state[l], a));
-        hit_context.push_back(guesses[l].context);
+        best.push_back(rank_candidates(candidate[l], state[l], a));
+        repeat_context.push_back(best[l].context);
       }
-      const auto symbol = coder.hits(head.tables.hits, hit_context);
+      const auto symbol = coder.repeats(head.tables.repeats, repeat_context);
       std::vector<Pair> value(lanes);
       std::vector<int> first_residual(lanes);
       const bool any = std::ranges::find(symbol, 2U) != symbol.end();
       for (std::size_t l = 0; l < lanes; ++l)
-        value[l] = symbol[l] == 1 ? guesses[l].second : guesses[l].first;
+        value[l] = symbol[l] == 1 ? best[l].second : best[l].first;
       for (std::size_t p = 0; p < 2 && any; ++p) {
         std::vector<int> context(lanes, Lanes::kInactive);
         for (std::size_t l = 0; l < lanes; ++l) {
@@ -171,15 +171,15 @@ std::optional<std::vector<Values>> decode_pairs(const Head& head,
                                ? magnitude(capped(k.energy + capped(c + capped(c + c))) >> 1, true)
                            : t == 0 ? 15
                                     : magnitude(k.energy, true);
-          const int klass = head.update ? kPairUpdate[p][modes[p][l]].klass : 0;
-          context[l] = 64 * klass + 16 * k.sign + size;
+          const int context_class = head.update ? kPairUpdate[p][modes[p][l]].context_class : 0;
+          context[l] = 64 * context_class + 16 * k.sign + size;
         }
         const auto u = coder.tokens(head.tables.planes[p], context);
         for (std::size_t l = 0; l < lanes; ++l) {
           if (symbol[l] != 2) continue;
           const int r = residual(u[l], look(state[l].e[p], a).flip);
           if (p == 0) first_residual[l] = r;
-          value[l][p] = word(forecast[l].prediction[p] + r);
+          value[l][p] = word(predicted[l].prediction[p] + r);
         }
       }
       if (!coder.valid()) return {};
@@ -188,11 +188,11 @@ std::optional<std::vector<Values>> decode_pairs(const Head& head,
         for (std::size_t k = 0; k < 7; ++k) b.matched[t][k] = candidate[l][k] == value[l];
         for (std::size_t p = 0; p < 2; ++p) {
           b.value[p][t] = value[l][p];
-          b.e[p][t] = sign(value[l][p] - forecast[l].prediction[p]);
-          b.d[p][t] = sign(value[l][p] - forecast[l].reference[p]);
+          b.e[p][t] = sign(value[l][p] - predicted[l].prediction[p]);
+          b.d[p][t] = sign(value[l][p] - predicted[l].reference[p]);
           for (std::size_t k = 8 * p; k < 8 * p + 8 && !head.update; ++k) {
-            b.key_d[k][t] = sign(value[l][p] - forecast[l].key_reference[k]);
-            b.key_e[k][t] = sign(value[l][p] - forecast[l].key_prediction[k]);
+            b.key_d[k][t] = sign(value[l][p] - predicted[l].key_reference[k]);
+            b.key_e[k][t] = sign(value[l][p] - predicted[l].key_prediction[k]);
           }
         }
       }

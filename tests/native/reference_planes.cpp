@@ -1,13 +1,13 @@
-#include "native/reference_look.h"
+#include "native/reference_context.h"
 
 namespace gicodec::reference {
 namespace {
 
 constexpr Mode kPlaneUpdate[8] = {
-    {kPast, "", 4, 2, 0, 2, 3, 0}, {kPast, "", 2, 2, 0, 0, 0, 1},
-    {kPast, "", 4, 2, 0, 2, 0, 1}, {kPast, "", 6, 6, -4, 0, 4, 2},
-    {kPast, "", 0, 0, 0, 0, 0, 3}, {kPast, "", 4, 0, 0, 4, 4, 0},
-    {kPast, "", 2, 2, 0, 0, 4, 0}, {kPastChange, "XZ", 0, 0, 0, 0, 0, 3}};
+    {kPrevious, "", 4, 2, 0, 2, 3, 0}, {kPrevious, "", 2, 2, 0, 0, 0, 1},
+    {kPrevious, "", 4, 2, 0, 2, 0, 1}, {kPrevious, "", 6, 6, -4, 0, 4, 2},
+    {kPrevious, "", 0, 0, 0, 0, 0, 3}, {kPrevious, "", 4, 0, 0, 4, 4, 0},
+    {kPrevious, "", 2, 2, 0, 0, 4, 0}, {kPreviousChange, "XZ", 0, 0, 0, 0, 0, 3}};
 constexpr Mode kPlaneKey[8] = {
     {kConstant, "", 8, 8, -8, 0, 4, 0},  {kAverage, "XZ", 6, 6, -4, 0, 4, 2},
     {kAverage, "Y", 6, 6, -4, 0, 4, 1},  {kAverage, "X", 6, 6, -4, 0, 4, 1},
@@ -33,21 +33,21 @@ int operate_scaled(const Mode& m, const std::vector<int>& d, const std::vector<i
 int sgn(int x) { return (x > 0) - (x < 0); }
 /// What the texels of a block repeat.
 struct Repeats {
-  explicit Repeats(std::size_t texels) : guess(texels), alike(texels) {}
-  std::vector<const Values*> guess;  ///< null: none
-  std::vector<std::array<bool, 4>> alike;
+  explicit Repeats(std::size_t texels) : rank_candidates(texels), equal_to(texels) {}
+  std::vector<const Values*> rank_candidates;  ///< null: none
+  std::vector<std::array<bool, 4>> equal_to;
 };
 
-/// The hit step of texel t.
+/// The repeat step of texel t.
 bool read_repeats(const Head& head, const std::vector<Surroundings>& blocks, std::size_t t,
                   std::vector<Repeats>& repeats, Lanes& coder) {
   static const Values kZero(32, std::vector<int>(32768));
   const int columns = static_cast<int>(head.columns);
   const Around a = around(columns, static_cast<int>(t) % columns, static_cast<int>(t) / columns);
   std::vector<std::array<const Values*, 4>> candidate(blocks.size());
-  std::vector<std::array<std::size_t, 2>> guess(blocks.size());
+  std::vector<std::array<std::size_t, 2>> rank_candidates(blocks.size());
   std::vector<int> context;
-  const auto alike = [&](const Values* x, const Values* y) {
+  const auto equal_to = [&](const Values* x, const Values* y) {
     for (std::size_t p = 0; p < head.bits.size(); ++p) {
       if (head.coded[p] && (*x)[p][t] != (*y)[p][t]) return false;
     }
@@ -55,35 +55,36 @@ bool read_repeats(const Head& head, const std::vector<Surroundings>& blocks, std
   };
   for (std::size_t l = 0; l < blocks.size(); ++l) {
     const Surroundings& s = blocks[l];
-    candidate[l] = {s.past ? &*s.past : &kZero, s.now[0] ? &*s.now[0] : &kZero,
+    candidate[l] = {s.previous ? &*s.previous : &kZero, s.now[0] ? &*s.now[0] : &kZero,
                     s.now[1] ? &*s.now[1] : &kZero, s.now[2] ? &*s.now[2] : &kZero};
     int score[4] = {};
     for (std::size_t k = 0; k < 4 && a.w >= 0; ++k) {
       const auto m = [&](int u) {
-        return repeats[l].alike[static_cast<std::size_t>(u)][k] ? 1 : 0;
+        return repeats[l].equal_to[static_cast<std::size_t>(u)][k] ? 1 : 0;
       };
       score[k] = 4 * m(a.w) + 3 * m(a.n) + 2 * m(a.ne) + m(a.nw);
     }
     const auto best = static_cast<std::size_t>(std::max_element(score, score + 4) - score);
-    guess[l] = {best, best};
+    rank_candidates[l] = {best, best};
     int votes = -1, second = -1;
     for (std::size_t k = 0; k < 4; ++k) {
-      if (alike(candidate[l][k], candidate[l][best])) {
+      if (equal_to(candidate[l][k], candidate[l][best])) {
         ++votes;
       } else if (score[k] > second) {
         second = score[k];
-        guess[l][1] = k;
+        rank_candidates[l][1] = k;
       }
     }
     context.push_back(5 * score[best] + votes);
   }
-  const auto symbol = coder.hits(head.tables.hits, context);
+  const auto symbol = coder.repeats(head.tables.repeats, context);
   if (!coder.valid()) return false;
   for (std::size_t l = 0; l < blocks.size(); ++l) {
     if (symbol[l] == 2) continue;
-    const Values* taken = candidate[l][guess[l][symbol[l]]];
-    repeats[l].guess[t] = taken;
-    for (std::size_t k = 0; k < 4; ++k) repeats[l].alike[t][k] = alike(candidate[l][k], taken);
+    const Values* taken = candidate[l][rank_candidates[l][symbol[l]]];
+    repeats[l].rank_candidates[t] = taken;
+    for (std::size_t k = 0; k < 4; ++k)
+      repeats[l].equal_to[t][k] = equal_to(candidate[l][k], taken);
   }
   return true;
 }
@@ -154,7 +155,7 @@ std::optional<std::vector<Values>> decode_planes(const Head& head,
               p == second ? std::abs(e0) : capped(capped(std::abs(e0) + std::abs(e1)) + 1) >> 1;
           const int energy = at_first ? capped(capped(2 * c) * 2) : look_l.energy;
           size = magnitude(capped(energy - (energy >> 2) + capped(2 * c)), deep);
-          if (head.update && m.klass == 3) {
+          if (head.update && m.context_class == 3) {
             const int votes = p == second ? 2 * sgn(e0) : sgn(e0) + sgn(e1);
             const int both = 3 * votes + sgn(sign(at(e[l][p], a.w) + at(e[l][p], a.n)));
             look_l.flip = both < 0;
@@ -165,16 +166,17 @@ std::optional<std::vector<Values>> decode_planes(const Head& head,
         const int sum = reference[l] + op;
         prediction.push_back(mantissa ? std::clamp(sign(sum), 0, (1 << head.bits[p]) - 1) : sum);
         flip.push_back(look_l.flip);
-        const bool coded = blocks[l].exists[t] && repeats[l].guess[t] == nullptr;
-        context.push_back(coded ? 64 * m.klass + sign_part + size : Lanes::kInactive);
+        const bool coded = blocks[l].exists[t] && repeats[l].rank_candidates[t] == nullptr;
+        context.push_back(coded ? 64 * m.context_class + sign_part + size : Lanes::kInactive);
       }
       const auto u = coder.tokens(head.tables.planes[head.place(p)], context);
       if (!coder.valid()) return {};
       for (std::size_t l = 0; l < lanes; ++l) {
         const int modulus = 1 << head.bits[p];
         int r = residual(u[l], flip[l]) & (modulus - 1);
-        if (const Values* guess = repeats[l].guess[t]; guess != nullptr) {
-          r = ((*guess)[p][t] - prediction[l]) & (modulus - 1);
+        if (const Values* rank_candidates = repeats[l].rank_candidates[t];
+            rank_candidates != nullptr) {
+          r = ((*rank_candidates)[p][t] - prediction[l]) & (modulus - 1);
         }
         if (r >= modulus / 2) r -= modulus;
         e[l][p][t] = r;

@@ -36,9 +36,9 @@ namespace {
 
 struct Place {
   bool exists = false, known = false, changed = false;
-  Components now, past, residual;
+  Components now, previous, residual;
   explicit Place(std::size_t components)
-      : now(components, 0), past(components, 0), residual(components, 0) {}
+      : now(components, 0), previous(components, 0), residual(components, 0) {}
 };
 
 bool zero(const Components& values) {
@@ -47,16 +47,16 @@ bool zero(const Components& values) {
 
 class Records {
  public:
-  Records(const TextureDesc& desc, Learner& learner)
+  Records(const TextureDesc& desc, BitModels& models)
       : desc_(desc),
         record_(desc.record),
         count_(record_.count),
-        learn_(learner),
+        models_(models),
         flat_(desc.block.y == 1 && desc.block.z == 1),
         l1_(count_),
         l2_(count_),
         none_(count_),
-        kin_(256, Kin(count_)),
+        similar_(256, SimilarRecord(count_)),
         sum_(count_, 0),
         noise_(count_, 0),
         error_(count_, std::array<Number, 4>{}) {
@@ -80,9 +80,10 @@ class Records {
       Place& here = places_[i];
       here.exists = in.exists[i];
       if (!here.exists) continue;
-      if (!in.past.empty()) here.past = unpacked(record_, in.past.data() + i * record_.bytes);
-      here.now = here.past;
-      here.known = !zero(here.past);
+      if (!in.previous.empty())
+        here.previous = unpacked(record_, in.previous.data() + i * record_.bytes);
+      here.now = here.previous;
+      here.known = !zero(here.previous);
       column_ = i % columns;
       const bool row = i >= columns;
       w_ = column_ > 0 ? &places_[i - 1] : &none_;
@@ -91,14 +92,14 @@ class Records {
       ne_ = row && column_ + 1 < columns ? &places_[i - columns + 1] : &none_;
       ww_ = column_ > 1 ? &places_[i - 2] : &none_;
       const Number known = here.known ? 1 : 0, at = static_cast<Number>(i);
-      const bool by_kin = flat_ && !in.past.empty();
-      Kin& kin = kin_[key(here.past)];
+      const bool by_similar = flat_ && !in.previous.empty();
+      SimilarRecord& similar = similar_[key(here.previous)];
       const Number v = flat_ ? (w_->exists && zero(w_->now) ? 1 : 0)
                              : (w_->changed ? 1 : 0) + (n_->changed ? 2 : 0);
-      if (by_kin) {
+      if (by_similar) {
         Number behind = 0;
         for (std::size_t k = i + 1; k < places_.size(); ++k) {
-          const auto bytes = in.past.begin() + static_cast<std::ptrdiff_t>(k * record_.bytes);
+          const auto bytes = in.previous.begin() + static_cast<std::ptrdiff_t>(k * record_.bytes);
           if (in.exists[k] && std::any_of(bytes, bytes + record_.bytes,
                                           [](std::byte x) { return x != std::byte{0}; })) {
             ++behind;
@@ -106,20 +107,20 @@ class Records {
         }
         const unsigned e = count_ - 1;
         const bool must = n == 0 && behind == 0;
-        const Number d = !here.known || !kin.is || must ? 0
-                         : kin.changed ? 2 + std::min(7U, width_of(kin.residual[e]))
-                                       : 1;
-        const Number first = must ? 0 : top4(here.past[e], e), second = must ? 0 : h % 4;
+        const Number d = !here.known || !similar.is || must ? 0
+                         : similar.changed ? 2 + std::min(7U, width_of(similar.residual[e]))
+                                           : 1;
+        const Number first = must ? 0 : top4(here.previous[e], e), second = must ? 0 : h % 4;
         const Number third = must ? 64 : std::min<Number>(at, 63);
-        here.changed = learn_.flag(
+        here.changed = models_.flag(
             known, {{H({4, known, d, must ? 1 : 0}), first},
                     {H({5, known, std::min<Number>(behind, 7), second}), std::min<Number>(n, 15)},
                     {H({6, known, third}), d}});
       } else {
         here.changed =
-            learn_.flag(known, {{H({1, known}), h % 16},
-                                {H({2, known, std::min<Number>(at, 63)}), std::min<Number>(n, 15)},
-                                {H({3, known, u_, v}), std::min<Number>(at, 15)}});
+            models_.flag(known, {{H({1, known}), h % 16},
+                                 {H({2, known, std::min<Number>(at, 63)}), std::min<Number>(n, 15)},
+                                 {H({3, known, u_, v}), std::min<Number>(at, 15)}});
       }
       h = (2 * h + (here.changed ? 1 : 0)) & 0xFFFFFFFF;
       if (here.changed) {
@@ -133,12 +134,12 @@ class Records {
         l1_ = here;
       }
       if (!flat_ || !here.known) continue;
-      kin.is = true;
-      kin.changed = here.changed;
-      kin.before = kin.residual;
+      similar.is = true;
+      similar.changed = here.changed;
+      similar.before = similar.residual;
       for (unsigned c = 0; c < count_; ++c) {
-        kin.past[c] = here.past[c] % 256;
-        kin.residual[c] = brought_into(here.residual[c], -255, 255);
+        similar.previous[c] = here.previous[c] % 256;
+        similar.residual[c] = brought_into(here.residual[c], -255, 255);
       }
     }
     u_ = 8 * n / (static_cast<Number>(places_.size()) + 1);
@@ -148,16 +149,16 @@ class Records {
   }
 
  private:
-  struct Kin {
+  struct SimilarRecord {
     bool is = false, changed = false;
-    Components past, residual, before;
-    explicit Kin(std::size_t components)
-        : past(components, 0), residual(components, 0), before(components, 0) {}
+    Components previous, residual, before;
+    explicit SimilarRecord(std::size_t components)
+        : previous(components, 0), residual(components, 0), before(components, 0) {}
   };
-  [[nodiscard]] std::size_t key(const Components& past) const {
+  [[nodiscard]] std::size_t key(const Components& previous) const {
     Number key = 0;
     for (unsigned c = 0; c < count_; ++c) {
-      if (kind(c) == ComponentKind::snorm) key = (16 * key + past[c] % 16) % 256;
+      if (kind(c) == ComponentKind::snorm) key = (16 * key + previous[c] % 16) % 256;
     }
     return static_cast<std::size_t>(key);
   }
@@ -199,17 +200,17 @@ class Records {
           for (unsigned i = 0; i < k; ++i) earlier = earlier || candidates[i] == candidates[k];
           if (earlier) continue;
           value = candidates[k];
-          found = learn_.flag(
+          found = models_.flag(
               32 + 3 * c + k,
               {{H({80 + c, k}), e % 8}, {H({96 + c, e % 256}), k}, {H({112 + c, h % 16}), k}});
         }
       }
       if (!found) {
         const Number tb = top_of(before[c], b), to = top_of(other[c], b);
-        value = learn_.value(c,
-                             {H({128 + c, f}), H({144 + c, tb, f}), H({160 + c, o}),
-                              H({176 + c, tb, to, e % 4}), H({192 + c, tb, e, f})},
-                             b);
+        value = models_.value(c,
+                              {H({128 + c, f}), H({144 + c, tb, f}), H({160 + c, o}),
+                               H({176 + c, tb, to, e % 4}), H({192 + c, tb, e, f})},
+                              b);
       }
       o = H({o, top_of(value, b)});
       e = 2 * e + (value == before[c] ? 1 : 0);
@@ -221,24 +222,25 @@ class Records {
     Number q = 1, r1 = 0, r2 = 0, k = 0, moved = 0;
     lead_ = -1;
     t_ = 0;
-    const bool alike =
+    const bool same_components =
         flat_ && mask_ != 0 &&
-        learn_.flag(2, {{7, 0}, {H({8, mask_}), 0}, {H({9, h % 8}), std::min<Number>(n, 3)}});
+        models_.flag(2, {{7, 0}, {H({8, mask_}), 0}, {H({9, h % 8}), std::min<Number>(n, 3)}});
     for (unsigned j = 0; j < count_; ++j) {
       const unsigned c = order_[j], b = bits(c);
       const Number g = (w_->residual[c] != 0 ? 1 : 0) + (n_->residual[c] != 0 ? 2 : 0);
       const bool same =
-          alike ? (mask_ >> c & 1) == 0
-                : learn_.flag(16 + c, {{H({32 + c, q % 256}), 0},
-                                       {H({48 + c, h % 8}), l1_.residual[c] != 0 ? 1 : 0},
-                                       {H({64 + c, q % 256, g}), std::min<Number>(n, 3)}});
+          same_components
+              ? (mask_ >> c & 1) == 0
+              : models_.flag(16 + c, {{H({32 + c, q % 256}), 0},
+                                      {H({48 + c, h % 8}), l1_.residual[c] != 0 ? 1 : 0},
+                                      {H({64 + c, q % 256, g}), std::min<Number>(n, 3)}});
       q = 2 * q + (same ? 0 : 1);
       if (same) continue;
       moved |= Number{1} << c;
       if (flat_ && b <= 8) {
         const Number d = difference(here, c);
         here.residual[c] = with_sign(d, b);
-        here.now[c] = (here.past[c] + d) & mask_of(b);
+        here.now[c] = (here.previous[c] + d) & mask_of(b);
       } else if (!flat_ || b <= 16 || !copy(here, j)) {
         number(here, c, j, k, r1, r2);
         r2 = r1;
@@ -251,22 +253,22 @@ class Records {
 
   bool copy(Place& here, unsigned j) {
     const unsigned c = order_[j], b = bits(c);
-    std::vector<Number> passed = {here.past[c]};
+    std::vector<Number> passed = {here.previous[c]};
     const auto is = [&](Number candidate, Number from, unsigned a) {
       if (std::ranges::find(passed, candidate) != passed.end()) return false;
       passed.push_back(candidate);
-      const bool hit = learn_.flag(
+      const bool match = models_.flag(
           208 + c,
           {{H({496 + c, from, a}), 0}, {H({10, from, t_}), 0}, {H({11, from, t_}), s_ % 4}});
-      s_ = (2 * s_ + (hit ? 1 : 0)) % 4;
-      if (from == 0) t_ = hit ? 1 : 2;
-      if (hit) here.now[c] = candidate;
-      return hit;
+      s_ = (2 * s_ + (match ? 1 : 0)) % 4;
+      if (from == 0) t_ = match ? 1 : 2;
+      if (match) here.now[c] = candidate;
+      return match;
     };
     if (l1_.exists && is(l1_.now[c], 0, c)) return true;
     for (unsigned i = j; i-- > 0;) {
       const unsigned a = order_[i];
-      if (bits(a) != b || here.now[a] == here.past[a]) continue;
+      if (bits(a) != b || here.now[a] == here.previous[a]) continue;
       if (is(here.now[a], 1, a)) return true;
       if (kind(c) == ComponentKind::sfloat && is(here.now[a] ^ Number{1} << (b - 1), 2, a)) {
         return true;
@@ -277,32 +279,34 @@ class Records {
 
   Number difference(const Place& here, unsigned c) {
     const unsigned b = bits(c);
-    const Kin& kin = kin_[key(here.past)];
-    const Number p = here.past[c], r = kin.residual[c], l = l1_.residual[c], x = p - kin.past[c];
-    const Number w = kin.is ? 1 + sign(r) : 0;
-    const Number gap = kin.is ? 1 + (x >= 0 ? 4 : 0) + std::min<Number>(3, width_of(x) / 2) : 0;
-    const Number y = learn_.flag(80 + c, {{H({400 + c, w}), 4 * sign(l) + sign(w_->residual[c])},
-                                          {H({416 + c, top4(p, c)}), w},
-                                          {H({432 + c, w, gap}), std::min(7U, width_of(r))}})
+    const SimilarRecord& similar = similar_[key(here.previous)];
+    const Number p = here.previous[c], r = similar.residual[c], l = l1_.residual[c],
+                 x = p - similar.previous[c];
+    const Number w = similar.is ? 1 + sign(r) : 0;
+    const Number gap = similar.is ? 1 + (x >= 0 ? 4 : 0) + std::min<Number>(3, width_of(x) / 2) : 0;
+    const Number y = models_.flag(80 + c, {{H({400 + c, w}), 4 * sign(l) + sign(w_->residual[c])},
+                                           {H({416 + c, top4(p, c)}), w},
+                                           {H({432 + c, w, gap}), std::min(7U, width_of(r))}})
                          ? 1
                          : 0;
     const auto size = [y](Number by, Number unit) {
       return by != 0 && (by < 0) == (y == 1) ? 1 + std::abs(by) / unit : 0;
     };
-    const Number f = !kin.is ? 102 : r == 0 ? 100 : size(r, 4) == 0 ? 101 : size(r, 4);
+    const Number f = !similar.is ? 102 : r == 0 ? 100 : size(r, 4) == 0 ? 101 : size(r, 4);
     const unsigned all = b - 1, high = std::min(4U, all), rest = all - high;
-    const Number v = learn_.value(
-        16 + c,
-        {H({208 + c, size(kin.before[c], 8), y}), H({224 + c, f, gap, y}), H({240 + c, p >> 2, y}),
-         H({256 + c, f >> 1, size(l, 8) >> 1, y}), H({272 + c, p >> 5, f >> 1, y})},
-        high);
+    const Number v =
+        models_.value(16 + c,
+                      {H({208 + c, size(similar.before[c], 8), y}), H({224 + c, f, gap, y}),
+                       H({240 + c, p >> 2, y}), H({256 + c, f >> 1, size(l, 8) >> 1, y}),
+                       H({272 + c, p >> 5, f >> 1, y})},
+                      high);
     const Number by = v << rest;
     const Number at = ((y == 1 ? p - by : p + by) & mask_of(b)) >> rest;
     Number m = 1;
     for (unsigned i = 0; i < rest; ++i) {
-      m = 2 * m + (learn_.flag(95 + 7 * c + m, {{H({448 + c, v, p % 4, y}), m},
-                                                {H({464 + c, at, p % 4, y}), m},
-                                                {H({480 + c, at >> 4, p % 4, y}), m}})
+      m = 2 * m + (models_.flag(95 + 7 * c + m, {{H({448 + c, v, p % 4, y}), m},
+                                                 {H({464 + c, at, p % 4, y}), m},
+                                                 {H({480 + c, at >> 4, p % 4, y}), m}})
                        ? 1
                        : 0);
     }
@@ -310,8 +314,8 @@ class Records {
     return y == 1 ? -magnitude - 1 : magnitude;
   }
 
-  std::array<Number, 4> guesses(unsigned c, const Place& here) const {
-    const Number g0 = a(c, here.past);
+  std::array<Number, 4> predictions(unsigned c, const Place& here) const {
+    const Number g0 = a(c, here.previous);
     std::array<Number, 4> g = {g0, g0, g0, g0};
     if (!linear(c) && !code(c)) return g;
     Number s = 0, t = 0, m = 0;
@@ -319,29 +323,29 @@ class Records {
     for (const auto& [place, weight] : around) {
       if (!place->known) continue;
       s += weight * a(c, place->now);
-      t += weight * a(c, place->past);
+      t += weight * a(c, place->previous);
       m += weight;
     }
     if (linear(c)) {
       if (t + g0 != 0) g[1] = prop(g0, s + g0, t + g0);
     } else {
-      g[1] = brought_into(g0 + (s - t) / (m + 1), 0, kMost);
+      g[1] = brought_into(g0 + (s - t) / (m + 1), 0, kMax);
     }
     g[2] = g[1];
     if (lead_ < 0) return g;
-    g[2] = linear(c) ? prop(g[1], lead_now_, lead_guess_)
-                     : brought_into(g[1] + lead_now_ - lead_guess_, 0, kMost);
+    g[2] = linear(c) ? prop(g[1], lead_now_, lead_prediction_)
+                     : brought_into(g[1] + lead_now_ - lead_prediction_, 0, kMax);
     const Number of_lead = sum_[static_cast<std::size_t>(lead_)];
     if (of_lead != 0) {
       const Number by = prop(std::abs(lead_change_), sum_[c], of_lead);
-      g[3] = brought_into(lead_change_ < 0 ? g0 - by : g0 + by, 0, kMost);
+      g[3] = brought_into(lead_change_ < 0 ? g0 - by : g0 + by, 0, kMax);
     }
     return g;
   }
 
   void number(Place& here, unsigned c, unsigned j, Number k, Number r1, Number r2) {
     const unsigned b = bits(c);
-    const std::array<Number, 4> g = guesses(c, here);
+    const std::array<Number, 4> g = predictions(c, here);
     const Number e = mantissa(c) ? here.now[static_cast<std::size_t>(exponent_)] : 0;
     std::array<Number, 4> values{};
     std::size_t best = 0;
@@ -355,32 +359,33 @@ class Records {
     const Number y = (w_->known ? 1 : 0) + (n_->known ? 2 : 0);
     const Number z = p == 0 ? 0 : 4 * width_of(p) + ((4 * p) >> (width_of(p) - 1)) % 4;
     const Number x =
-        mantissa(c) ? brought_into(e - here.past[static_cast<std::size_t>(exponent_)], -3, 3) + 3
-                    : 0;
+        mantissa(c)
+            ? brought_into(e - here.previous[static_cast<std::size_t>(exponent_)], -3, 3) + 3
+            : 0;
     const Number last = l1_.residual[c];
     const Word s1 = H({368 + c, 3 * sign(w_->residual[c]) + sign(n_->residual[c])});
     const Word s2 = H({384 + c, x});
     const Number i1 = sign(last), i2 = 3 * sign(r1) + sign(r2);
     const Number d =
-        learn_.number(c,
-                      {H({288 + c, half(energy), y}), H({304 + c, width_of(r1), width_of(r2), k}),
-                       H({320 + c, half(energy / 2), width_of(r1), std::min(j, 3U)}),
-                       H({336 + c, z, x}), H({352 + c, half(noise_[c]), width_of(last)})},
-                      {{s1, i1}, {s2, i2}, {H({s1, s2, i1}), i2}});
+        models_.number(c,
+                       {H({288 + c, half(energy), y}), H({304 + c, width_of(r1), width_of(r2), k}),
+                        H({320 + c, half(energy / 2), width_of(r1), std::min(j, 3U)}),
+                        H({336 + c, z, x}), H({352 + c, half(noise_[c]), width_of(last)})},
+                       {{s1, i1}, {s2, i2}, {H({s1, s2, i1}), i2}});
     const Number value = (p + d) & mask_of(b);
     here.now[c] = value;
     here.residual[c] = with_sign(d, b);
     for (std::size_t i = 0; i < 4; ++i) {
-      const Number off = 64 * std::min<Number>(std::abs(values[i] - value), 4095);
-      error_[c][i] += (off - error_[c][i]) >> 4;
+      const Number error = 64 * std::min<Number>(std::abs(values[i] - value), 4095);
+      error_[c][i] += (error - error_[c][i]) >> 4;
     }
     noise_[c] += (16 * std::min<Number>(std::abs(d), 1 << 20) - noise_[c]) >> 4;
-    const Number change = a(c, here.now) - a(c, here.past);
+    const Number change = a(c, here.now) - a(c, here.previous);
     sum_[c] += std::abs(change) - (sum_[c] >> 4);
     if (lead_ < 0 && (linear(c) || code(c))) {
       lead_ = static_cast<int>(c);
       lead_now_ = a(c, here.now);
-      lead_guess_ = std::max<Number>(g[1], 1);
+      lead_prediction_ = std::max<Number>(g[1], 1);
       lead_change_ = change;
     }
   }
@@ -388,12 +393,12 @@ class Records {
   const TextureDesc& desc_;
   const Record& record_;
   unsigned count_;
-  Learner& learn_;
+  BitModels& models_;
   bool flat_;
   int exponent_ = -1;
   std::vector<unsigned> order_;
   Place l1_, l2_, none_;
-  std::vector<Kin> kin_;
+  std::vector<SimilarRecord> similar_;
   Number mask_ = 0, s_ = 1, t_ = 0;
   Components sum_, noise_;
   std::vector<std::array<Number, 4>> error_;
@@ -403,19 +408,19 @@ class Records {
   std::size_t column_ = 0;
   const Place *w_ = nullptr, *n_ = nullptr, *nw_ = nullptr, *ne_ = nullptr, *ww_ = nullptr;
   int lead_ = -1;
-  Number lead_now_ = 0, lead_guess_ = 0, lead_change_ = 0;
+  Number lead_now_ = 0, lead_prediction_ = 0, lead_change_ = 0;
 };
 
 }  // namespace
 
 std::vector<std::vector<std::byte>> decode_records(const TextureDesc& desc,
                                                    const std::vector<AdaptiveBlock>& blocks,
-                                                   Learner& learner) {
-  Records records(desc, learner);
+                                                   BitModels& models) {
+  Records records(desc, models);
   std::vector<std::vector<std::byte>> out;
   for (const AdaptiveBlock& block : blocks) {
     out.push_back(records.block(block));
-    if (learner.source().missing()) return {};
+    if (models.source().missing()) return {};
   }
   return out;
 }

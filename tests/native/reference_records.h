@@ -24,10 +24,10 @@ using Components = std::vector<Number>;  ///< values of a record
 [[nodiscard]] Components unpacked(const Record& record, const std::byte* bytes);
 
 // Arithmetic of the models of records and vectors.
-inline constexpr Number kMost = Number{1} << 41;
+inline constexpr Number kMax = Number{1} << 41;
 [[nodiscard]] inline Number prop(Number v, Number t, Number f) {
   const unsigned s = width_of(f) > 16 ? width_of(f) - 16 : 0;
-  return std::min(v * std::min<Number>(t >> s, (1 << 20) - 1) / (f >> s), kMost);
+  return std::min(v * std::min<Number>(t >> s, (1 << 20) - 1) / (f >> s), kMax);
 }
 [[nodiscard]] inline Number half(Number x) {
   if (x < 0) x = -x;
@@ -38,6 +38,6 @@ inline constexpr Number kMost = Number{1} << 41;
 
 /// The blocks' records by the record model.
 [[nodiscard]] std::vector<std::vector<std::byte>> decode_records(
-    const TextureDesc& desc, const std::vector<AdaptiveBlock>& blocks, Learner& learner);
+    const TextureDesc& desc, const std::vector<AdaptiveBlock>& blocks, BitModels& models);
 
 }  // namespace gicodec::reference

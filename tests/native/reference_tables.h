@@ -42,27 +42,27 @@ class Bytes {
   bool failed_ = false;
 };
 
-struct Member {
+struct Distribution {
   unsigned k = 0, h = 0;
   std::array<unsigned, 15> units{};
 };
-struct Family {
-  std::array<Member, 16> members;
-  std::array<unsigned, 256> map{};  ///< contexts to members
+struct DistributionTables {
+  std::array<Distribution, 16> distributions;
+  std::array<unsigned, 256> map{};  ///< contexts to distributions
 };
-struct HitMember {
+struct RepeatDistribution {
   unsigned end0 = 0, end1 = 0;
 };
-struct HitFamily {
-  std::array<HitMember, 16> members;
+struct RepeatTables {
+  std::array<RepeatDistribution, 16> distributions;
   std::array<unsigned, 64> map{};
 };
 
 /// Those of a chunk.
 struct Tables {
-  std::array<Family, 3> planes;  ///< of planes 0, 1 and all others
-  Family modes;
-  HitFamily hits;
+  std::array<DistributionTables, 3> planes;  ///< of planes 0, 1 and all others
+  DistributionTables modes;
+  RepeatTables repeats;
 };
 using Sets = std::array<unsigned, 4>;
 
@@ -70,7 +70,7 @@ using Sets = std::array<unsigned, 4>;
 [[nodiscard]] Tables tables_of(const Sets& sets, bool pairs, bool update);
 
 [[nodiscard]] bool read_sets(Bytes& in, Sets& sets);
-[[nodiscard]] bool read_hits(Bytes& in, HitFamily& hits);
-[[nodiscard]] bool read_overrides(Bytes& in, Family& family);  ///< those of one role
+[[nodiscard]] bool read_repeat_tables(Bytes& in, RepeatTables& repeats);
+[[nodiscard]] bool read_overrides(Bytes& in, DistributionTables& tables);  ///< those of one role
 
 }  // namespace gicodec::reference

@@ -30,7 +30,7 @@ struct Parts {
 [[nodiscard]] inline Number shift(Number v, Number l) {
   if (l < 0) return l < -62 ? 0 : v >> -l;
   if (v == 0) return 0;
-  return width_of(v) + l > 41 ? kMost : v << l;
+  return width_of(v) + l > 41 ? kMax : v << l;
 }
 [[nodiscard]] inline Number steps(Number v, Number s) {
   if (s > 62) return 0;
@@ -87,7 +87,7 @@ inline constexpr Floats kFloats{32, 23, 254, 12}, kHalves{16, 10, 30, 25};
   return color[1] == 0 ? 0 : std::min<Number>((color[c] << 12) / color[1], 1000000);
 }
 
-[[nodiscard]] inline Number unlike_directions(const Three& a, const Three& b) {
+[[nodiscard]] inline Number direction_distance(const Three& a, const Three& b) {
   Number sum = 0;
   for (unsigned i = 0; i < 3; ++i) {
     const Number by = std::abs(a[i] - b[i]) >> 14;
@@ -95,7 +95,7 @@ inline constexpr Floats kFloats{32, 23, 254, 12}, kHalves{16, 10, 30, 25};
   }
   return sum >> 7;
 }
-[[nodiscard]] inline Number unlike_colors(const Three& a, const Three& b) {
+[[nodiscard]] inline Number color_distance(const Three& a, const Three& b) {
   const unsigned by = over(std::max(std::ranges::max(a), std::ranges::max(b)), 20);
   Number u = 0, v = 0;
   for (unsigned i = 0; i < 3; ++i) {

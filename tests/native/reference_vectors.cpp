@@ -26,53 +26,54 @@ std::vector<std::array<int, 3>> around() {
 
 class Vectors : Lights {
  public:
-  Vectors(const TextureDesc& desc, const HeldBlocks& held, Learner& learner)
-      : Lights(desc.record, learner), around_(around()) {
+  Vectors(const TextureDesc& desc, const HeldBlocks& held, BitModels& models)
+      : Lights(desc.record, models), around_(around()) {
     for (const auto& [place, bytes] : held) {
       known_[place] = {scale_.vertex_of(bytes), {}, true, {}};
     }
   }
 
   std::vector<std::byte> block(const AdaptiveBlock& in) {
-    const Vertex past = in.past.empty() ? Vertex{} : scale_.vertex_of(in.past);
-    has_past_ = past != Vertex{};
+    const Vertex previous = in.previous.empty() ? Vertex{} : scale_.vertex_of(in.previous);
+    has_previous_ = previous != Vertex{};
     now_ = {};
-    if (look_around(in.place)) {
-      guess(past, true, 0);
-      lights(past);
+    if (find_neighbours(in.place)) {
+      predict(previous, true, 0);
+      lights(previous);
       last_ = now_;
       had_light_ = true;
     }
-    known_[in.place] = {now_, past, false, {}};
+    known_[in.place] = {now_, previous, false, {}};
     return scale_.bytes_of(now_);
   }
 
  private:
   /// Finds the vertices around and reads whether this one has light.
-  bool look_around(const std::array<std::uint32_t, 3>& place) {
+  bool find_neighbours(const std::array<std::uint32_t, 3>& place) {
     near_.clear();
     for (const auto& by : around_) {
       std::array<std::uint32_t, 3> at{};
       for (unsigned i = 0; i < 3; ++i) at[i] = place[i] + static_cast<std::uint32_t>(by[i]);
       const auto found = known_.find(at);
-      if (found == known_.end() || (found->second.held && has_past_)) continue;
+      if (found == known_.end() || (found->second.held && has_previous_)) continue;
       near_.push_back({by[0] * by[0] + by[1] * by[1] + by[2] * by[2], &found->second});
       if (near_.size() == 16) break;
     }
     return has_light();
   }
 
-  void lights(const Vertex& past) {
+  void lights(const Vertex& previous) {
     residuals_ = {};
     lights_ = {};
     Number m = 0;
     for (unsigned h = 0; h < 6; ++h) {
       const bool same =
-          has_past_ &&
-          learn_.flag(2, {{H({4, h}), m % 16}, {H({5, masks_, h}), 0}, {H({6, m, masks_ % 4}), h}});
+          has_previous_ &&
+          models_.flag(2,
+                       {{H({4, h}), m % 16}, {H({5, masks_, h}), 0}, {H({6, m, masks_ % 4}), h}});
       if (same) {
         m |= Number{1} << h;
-        now_[h] = past[h];
+        now_[h] = previous[h];
       } else {
         closes_ = h == 3 || h == 5;
         direction(h);
@@ -100,18 +101,19 @@ class Vectors : Lights {
     }
     const Unit unit = unit_of(rest, h);
     z_unit_ = unit.v;
-    z_ = std::min(unit.length >> 16, 3 * kMost);
+    z_ = std::min(unit.length >> 16, 3 * kMax);
     b_ = half(z_ == 0 ? 1000000 : std::min<Number>(4 * all / z_, 1000000));
   }
 
   void direction(unsigned h) {
     const unsigned a = h / 2;
     const Number k = closes_ ? 1 : 0, sigma = h % 2 == 1 ? -1 : 1;
-    guesses_.weigh([](const Guess&) { return Number{0}; }, h);
+    predictors_.weigh([](const Predictor&) { return Number{0}; }, h);
     Number greatest = 0;
-    for (const Guess& g : guesses_.all) greatest = std::max(greatest, sum_of(g.lights[h].color));
+    for (const Predictor& g : predictors_.all)
+      greatest = std::max(greatest, sum_of(g.lights[h].color));
     Three q{};
-    for (const Guess& g : guesses_.all) {
+    for (const Predictor& g : predictors_.all) {
       for (unsigned i = 0; i < 3; ++i) {
         q[i] += g.weight * (g.lights[h].direction[i] >> 10) *
                 (sum_of(g.lights[h].color) >> over(greatest, 24));
@@ -119,12 +121,12 @@ class Vectors : Lights {
     }
     const Three near = unit_of(q, h).v;
     const unsigned across[2] = {(a + 1) % 3, (a + 2) % 3};
-    const Number off = guesses_.mean([&](const Guess& g) {
+    const Number spread = predictors_.mean([&](const Predictor& g) {
       const Three& d = g.lights[h].direction;
       return std::abs(d[across[0]] - near[across[0]]) + std::abs(d[across[1]] - near[across[1]]);
     });
-    const Number s = guesses_.total == 0 ? 0 : half((127 * off) >> 22);
-    look_at_guesses(h);
+    const Number s = predictors_.total == 0 ? 0 : half((127 * spread) >> 22);
+    spread_of_predictors(h);
     b_ = 0;
     if (closes_) close(h);
     const Three& x = closes_ ? z_unit_ : near;
@@ -140,9 +142,9 @@ class Vectors : Lights {
       const Number beta = closes_ ? b_ : h % 2 == 1 ? half(residuals_[h - 1].across[i]) : 20;
       const Number gamma = before(
           h, [](const Residuals& of) { return std::abs(of.across[0]) + std::abs(of.across[1]); });
-      const auto n = static_cast<Number>(std::min<std::size_t>(guesses_.all.size(), 9));
+      const auto n = static_cast<Number>(std::min<std::size_t>(predictors_.all.size(), 9));
       const auto next = scale_.next_coordinate(x[c]);
-      here.across[i] = learn_.number(
+      here.across[i] = models_.number(
           static_cast<unsigned>(q2),
           {H({10 + q2, s, r}), H({14 + q2, beta, r, h}), H({18 + q2, n_, place, high}),
            H({22 + q2, s, beta, n}), H({26 + q2, closes_ ? alpha : gamma, b_, r})},
@@ -161,10 +163,10 @@ class Vectors : Lights {
     const Number quarter = next.quarter;
     const Number sum =
         next.code +
-        learn_.number(4,
-                      {H({30, g}), H({31, e, quarter}), H({32, f / 4, quarter}),
-                       H({33, std::min<Number>(e, 4), alpha}), H({34, g, alpha})},
-                      {{H({212, quarter}), 0}, {H({213, alpha}), 0}, {H({214, g, alpha}), 0}});
+        models_.number(4,
+                       {H({30, g}), H({31, e, quarter}), H({32, f / 4, quarter}),
+                        H({33, std::min<Number>(e, 4), alpha}), H({34, g, alpha})},
+                       {{H({212, quarter}), 0}, {H({213, alpha}), 0}, {H({214, g, alpha}), 0}});
     now.direction[a] = scale_.coordinate_code(sigma > 0 ? sum : scale_.floats() ? -1 - sum : -sum);
     rho_ = half(std::abs(here.across[0]) + std::abs(here.across[1]));
   }
@@ -178,12 +180,12 @@ class Vectors : Lights {
 
 std::vector<std::vector<std::byte>> decode_vectors(const TextureDesc& desc,
                                                    const std::vector<AdaptiveBlock>& blocks,
-                                                   const HeldBlocks& held, Learner& learner) {
-  Vectors vectors(desc, held, learner);
+                                                   const HeldBlocks& held, BitModels& models) {
+  Vectors vectors(desc, held, models);
   std::vector<std::vector<std::byte>> out;
   for (const AdaptiveBlock& block : blocks) {
     out.push_back(vectors.block(block));
-    if (learner.source().missing()) return {};
+    if (models.source().missing()) return {};
   }
   return out;
 }

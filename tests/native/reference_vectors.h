@@ -11,6 +11,6 @@ namespace gicodec::reference {
 /// The blocks' records by the vector model.
 [[nodiscard]] std::vector<std::vector<std::byte>> decode_vectors(
     const TextureDesc& desc, const std::vector<AdaptiveBlock>& blocks, const HeldBlocks& held,
-    Learner& learner);
+    BitModels& models);
 
 }  // namespace gicodec::reference

@@ -13,7 +13,7 @@ namespace gicodec::reference {
 namespace {
 
 using Three32 = std::array<int, 3>;
-constexpr int kMostSide = 1 << 18;
+constexpr int kMaxSide = 1 << 18;
 
 struct Place {
   unsigned level = 0;
@@ -67,9 +67,9 @@ bool is_lit(const Codes& codes) { return codes.color != Three{} || codes.exponen
 
 class Voxels : Lights {
  public:
-  Voxels(const TextureDesc& desc, const std::vector<HeldBrick>& held, Learner& learner)
-      : Lights(desc.record, learner), n_side_(desc.block.y), around_(around()) {
-    guesses_.dark_too = false;
+  Voxels(const TextureDesc& desc, const std::vector<HeldBrick>& held, BitModels& models)
+      : Lights(desc.record, models), n_side_(desc.block.y), around_(around()) {
+    predictors_.dark_too = false;
     for (const HeldBrick& one : held) {
       const auto mask = std::span(one.presence).subspan(8);
       if (std::ranges::all_of(mask, [](std::byte b) { return b == std::byte{0}; })) continue;
@@ -88,32 +88,33 @@ class Voxels : Lights {
 
   std::vector<std::byte> block(const AdaptiveBlock& in) {
     brick_ = empty_brick(in.presence);
-    if (!in.past_presence.empty() &&
-        std::ranges::equal(std::span(in.past_presence).first(8), std::span(in.presence).first(8))) {
+    if (!in.previous_presence.empty() &&
+        std::ranges::equal(std::span(in.previous_presence).first(8),
+                           std::span(in.presence).first(8))) {
       for (unsigned v = 0; v < brick_.voxels.size(); ++v) {
-        if (!is_named(in.past_presence, v)) continue;
+        if (!is_named(in.previous_presence, v)) continue;
         brick_.voxels[v].had = true;
-        brick_.voxels[v].before = scale_.vertex_of(in.past, records_at(v));
+        brick_.voxels[v].before = scale_.vertex_of(in.previous, records_at(v));
       }
     }
     for (auto first = order_.begin(); first != order_.end(); first += 8) {
-      family_.clear();
+      siblings_.clear();
       for (const Three32& at : std::span(first, 8)) {
-        if (brick_.voxels[number_of(at)].exists) family_.push_back(at);
+        if (brick_.voxels[number_of(at)].exists) siblings_.push_back(at);
       }
-      for (const Three32& at : family_) tell(at, brick_.voxels[number_of(at)]);
-      for (const Three32& at : family_) {
+      for (const Three32& at : siblings_) code_occupancy(at, brick_.voxels[number_of(at)]);
+      for (const Three32& at : siblings_) {
         Voxel& voxel = brick_.voxels[number_of(at)];
-        if (*voxel.told_zero) continue;
+        if (*voxel.occupancy_zero) continue;
         code(at, voxel);
         voxel.now = now_;
       }
-      for (const Three32& at : family_) {
+      for (const Three32& at : siblings_) {
         Voxel& voxel = brick_.voxels[number_of(at)];
-        voxel.told_zero.reset();
-        voxel.told_lit.reset();
+        voxel.occupancy_zero.reset();
+        voxel.occupancy_lit.reset();
       }
-      if (learn_.source().missing()) return {};
+      if (models_.source().missing()) return {};
     }
     for (Voxel& voxel : brick_.voxels) voxel.done = voxel.exists;
     std::vector<std::byte> out;
@@ -128,10 +129,12 @@ class Voxels : Lights {
  private:
   struct Voxel : Known {
     bool exists = false, done = false;
-    bool had = false;  ///< there is a past voxel
-    std::optional<std::array<bool, 6>> told_lit;
-    [[nodiscard]] bool lit(unsigned h) const { return told_lit ? (*told_lit)[h] : is_lit(now[h]); }
-    [[nodiscard]] bool has_past() const { return before != Vertex{}; }
+    bool had = false;  ///< there is a previous voxel
+    std::optional<std::array<bool, 6>> occupancy_lit;
+    [[nodiscard]] bool lit(unsigned h) const {
+      return occupancy_lit ? (*occupancy_lit)[h] : is_lit(now[h]);
+    }
+    [[nodiscard]] bool has_previous() const { return before != Vertex{}; }
   };
   struct Brick {
     Place place;
@@ -152,32 +155,32 @@ class Voxels : Lights {
     return brick;
   }
   [[nodiscard]] const Brick* brick_at(const Place& place) const {
-    if (std::ranges::any_of(place.at, [](int c) { return c < 0 || c >= kMostSide; })) return {};
+    if (std::ranges::any_of(place.at, [](int c) { return c < 0 || c >= kMaxSide; })) return {};
     if (const auto at = coded_.find(place); at != coded_.end()) return &at->second;
     const auto at = held_.find(place);
     return at == held_.end() ? nullptr : &at->second;
   }
 
-  void look_around(const Three32& at) {
+  void find_neighbours(const Three32& at) {
     near_.clear();
     for (const Three32& by : around_) {
       Three32 there = sum_of(at, by);
       Place place = brick_.place;
       for (unsigned a = 0; a < 3; ++a) {
-        const int off = there[a] < 0 ? -1 : there[a] >= n_side_ ? 1 : 0;
-        place.at[a] += off;
-        there[a] -= off * n_side_;
+        const int beyond = there[a] < 0 ? -1 : there[a] >= n_side_ ? 1 : 0;
+        place.at[a] += beyond;
+        there[a] -= beyond * n_side_;
       }
       const Brick* const brick = place == brick_.place ? &brick_ : brick_at(place);
       if (brick == nullptr) continue;
       const Voxel& voxel = brick->voxels[number_of(there)];
       const bool earlier = brick == &brick_ ? morton(there) < morton(at) : voxel.done;
-      if (!voxel.exists || !earlier || (has_past_ && !voxel.had)) continue;
+      if (!voxel.exists || !earlier || (has_previous_ && !voxel.had)) continue;
       near_.push_back({squared(by), &voxel});
       if (near_.size() == 3) break;
     }
   }
-  void look_up(const Three32& at) {
+  void find_parent(const Three32& at) {
     Place place = brick_.place;
     place.level = (place.level + 1) % 256;
     place.at = halves_of(place.at);
@@ -187,10 +190,10 @@ class Voxels : Lights {
     parent_ = brick == nullptr ? nullptr : &brick->voxels[number_of(there)];
     if (parent_ != nullptr && !parent_->exists) parent_ = nullptr;
   }
-  void look_at_siblings(const Three32& at) {
+  void split_siblings(const Three32& at) {
     earlier_.clear();
     others_.clear();
-    for (const Three32& other : family_) {
+    for (const Three32& other : siblings_) {
       (morton(other) < morton(at) ? earlier_ : others_).push_back(&brick_.voxels[number_of(other)]);
     }
   }
@@ -198,30 +201,30 @@ class Voxels : Lights {
     return std::ranges::count_if(voxels, [h](const Voxel* v) { return v->lit(h); });
   }
 
-  /// What is told of a voxel before the light of its family.
-  void tell(const Three32& at, Voxel& voxel) {
-    has_past_ = voxel.has_past();
-    look_around(at);
-    look_up(at);
-    look_at_siblings(at);
-    voxel.told_zero = !has_light();
-    voxel.told_lit.emplace();
-    if (*voxel.told_zero) return;
+  /// The occupancy of a voxel, which comes before the light of its siblings.
+  void code_occupancy(const Three32& at, Voxel& voxel) {
+    has_previous_ = voxel.has_previous();
+    find_neighbours(at);
+    find_parent(at);
+    split_siblings(at);
+    voxel.occupancy_zero = !has_light();
+    voxel.occupancy_lit.emplace();
+    if (*voxel.occupancy_zero) return;
     const auto to_come = static_cast<Number>(others_.size()), v = static_cast<Number>(near_.size());
     const auto as_voxel = [](const Near& n) { return static_cast<const Voxel*>(n.vertex); };
     Number b = 64, m = 0;
     if (v > 0) b = 0;
     for (unsigned h = 0; v > 0 && h < 6; ++h) b += as_voxel(near_[0])->lit(h) ? 1 << h : 0;
     for (unsigned h = 0; h < 6; ++h) {
-      const Number p = !has_past_ ? 0 : is_lit(voxel.before[h]) ? 2 : 1;
+      const Number p = !has_previous_ ? 0 : is_lit(voxel.before[h]) ? 2 : 1;
       const Number a = parent_ == nullptr ? 0 : parent_->lit(h) ? 2 : 1;
       const Number v0 =
           std::ranges::count_if(near_, [&](const Near& n) { return !as_voxel(n)->lit(h); });
-      const bool lit = learn_.flag(static_cast<unsigned>(4 + p),
-                                   {{H({7, 4 * v0 + v, a, p}), h},
-                                    {H({8, b, m, p}), h},
-                                    {H({9, lit_of(earlier_, h), to_come, a, h}), p}});
-      (*voxel.told_lit)[h] = lit;
+      const bool lit = models_.flag(static_cast<unsigned>(4 + p),
+                                    {{H({7, 4 * v0 + v, a, p}), h},
+                                     {H({8, b, m, p}), h},
+                                     {H({9, lit_of(earlier_, h), to_come, a, h}), p}});
+      (*voxel.occupancy_lit)[h] = lit;
       m += lit ? 1 << h : 0;
     }
   }
@@ -238,33 +241,33 @@ class Voxels : Lights {
         for (const Voxel* one : earlier_) {
           if (one->lit(h)) sum += p[i] - scale_.light_of(of(*one)[h]).color[i];
         }
-        out[h].color[i] = brought_into(sum / left, 0, kMost);
+        out[h].color[i] = brought_into(sum / left, 0, kMax);
       }
     }
     return out;
   }
-  void guess_rest(const Voxel& voxel) {
-    Guess one{static_cast<Number>(others_.size())};
+  void add_rest_predictor(const Voxel& voxel) {
+    Predictor one{static_cast<Number>(others_.size())};
     one.nearness = 1 << 14;
     one.lights = rest_ = rest([](const Voxel& of) -> const Vertex& { return of.now; });
-    if (has_past_ && parent_->had &&
+    if (has_previous_ && parent_->had &&
         std::ranges::all_of(earlier_, [](const Voxel* v) { return v->had; })) {
       const auto old = rest([](const Voxel& of) -> const Vertex& { return of.before; });
       for (unsigned h = 0; h < 6; ++h) {
         one.lights[h] = moved(scale_.light_of(voxel.before[h]), one.lights[h], old[h]);
       }
     }
-    guesses_.all.push_back(one);
+    predictors_.all.push_back(one);
   }
 
   void code(const Three32& at, const Voxel& voxel) {
-    has_past_ = voxel.has_past();
+    has_previous_ = voxel.has_previous();
     now_ = {};
-    look_around(at);
-    look_up(at);
-    look_at_siblings(at);
-    guess(voxel.before, parent_ == nullptr, parent_ == nullptr ? 0 : scale_.top_of(parent_->now));
-    if (parent_ != nullptr) guess_rest(voxel);
+    find_neighbours(at);
+    find_parent(at);
+    split_siblings(at);
+    predict(voxel.before, parent_ == nullptr, parent_ == nullptr ? 0 : scale_.top_of(parent_->now));
+    if (parent_ != nullptr) add_rest_predictor(voxel);
     residuals_ = {};
     lights_ = {};
     same_ = 0;
@@ -273,26 +276,26 @@ class Voxels : Lights {
       lights_[h] = scale_.light_of(now_[h]);
       compare(h);
     }
-    masks_ = has_past_ ? same_ : 0;
+    masks_ = has_previous_ ? same_ : 0;
     last_ = now_;
     had_light_ = true;
   }
 
   void hemisphere(unsigned h, const Voxel& voxel) {
-    const Vertex& past = voxel.before;
-    const bool lit = voxel.lit(h), alike = has_past_ && is_lit(past[h]) == lit;
-    if (alike && ((!lit && !scale_.floats()) || is_same(h))) {
-      now_[h] = past[h];
+    const Vertex& previous = voxel.before;
+    const bool lit = voxel.lit(h), by_green = has_previous_ && is_lit(previous[h]) == lit;
+    if (by_green && ((!lit && !scale_.floats()) || is_same(h))) {
+      now_[h] = previous[h];
       same_ |= Number{1} << h;
       return;
     }
     if (lit) {
-      guesses_.weigh([](const Guess&) { return Number{0}; }, h);
-      look_at_guesses(h);
+      predictors_.weigh([](const Predictor&) { return Number{0}; }, h);
+      spread_of_predictors(h);
       complete(h);
       color(h);
     }
-    if (scale_.floats()) alpha(h, past);
+    if (scale_.floats()) alpha(h, previous);
   }
   void complete(unsigned h) {
     completed_.reset();
@@ -304,22 +307,22 @@ class Voxels : Lights {
   }
   bool is_same(unsigned h) {
     const auto v = static_cast<Number>(near_.size());
-    const Number as_past = std::ranges::count_if(
+    const Number as_previous = std::ranges::count_if(
         near_, [&](const Near& n) { return n.vertex->now[h] == n.vertex->before[h]; });
-    const Number y = v == 0 ? 9 : 8 * as_past / v;
+    const Number y = v == 0 ? 9 : 8 * as_previous / v;
     const Number a = parent_ == nullptr || !parent_->had     ? 2
                      : parent_->now[h] == parent_->before[h] ? 1
                                                              : 0;
-    return learn_.flag(
+    return models_.flag(
         2, {{H({4, y, a}), h}, {H({5, same_, h, a}), y}, {H({6, y, masks_ >> h & 1}), a}});
   }
-  void alpha(unsigned h, const Vertex& past) {
-    const Number before = h % 2 == 1  ? now_[h - 1].alpha
-                          : has_past_ ? past[h].alpha
-                                      : last_[h].alpha;
+  void alpha(unsigned h, const Vertex& previous) {
+    const Number before = h % 2 == 1      ? now_[h - 1].alpha
+                          : has_previous_ ? previous[h].alpha
+                                          : last_[h].alpha;
     const Number o = h == 0 ? last_[5].alpha : now_[h - 1].alpha;
     const Number s = h % 2, coarse = Number{static_cast<Word>(before)} / 64;
-    const Number by = learn_.number(
+    const Number by = models_.number(
         13,
         {H({20, s, before}), H({21, s, o, h}), H({22, s}), H({23, h, coarse}), H({24, before, o})},
         {{H({240, s}), 0}, {H({241, before}), s}, {H({242, h}), 0}});
@@ -335,8 +338,8 @@ class Voxels : Lights {
 
   // Of a voxel.
   const Voxel* parent_ = nullptr;
-  std::vector<Three32> family_;
-  std::vector<const Voxel*> earlier_, others_;  ///< of its family; itself among the others
+  std::vector<Three32> siblings_;
+  std::vector<const Voxel*> earlier_, others_;  ///< of its siblings; itself among the others
   std::array<Light, 6> rest_{};
   Number same_ = 0;
 };
@@ -351,18 +354,18 @@ bool is_voxels(const TextureDesc& desc) {
 std::vector<std::vector<std::byte>> decode_voxels(const TextureDesc& desc,
                                                   const std::vector<AdaptiveBlock>& blocks,
                                                   const std::vector<HeldBrick>& held,
-                                                  Learner& learner) {
+                                                  BitModels& models) {
   std::vector<std::size_t> order(blocks.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) {
     const auto &x = blocks[a].presence, &y = blocks[b].presence;
     return x[7] != y[7] ? x[7] > y[7] : key_of(x) < key_of(y);
   });
-  Voxels voxels(desc, held, learner);
+  Voxels voxels(desc, held, models);
   std::vector<std::vector<std::byte>> out(blocks.size());
   for (const std::size_t i : order) {
     out[i] = voxels.block(blocks[i]);
-    if (learner.source().missing()) return {};
+    if (models.source().missing()) return {};
   }
   return out;
 }

@@ -14,6 +14,6 @@ namespace gicodec::reference {
 /// The blocks' records by the voxel model. `held` is ascending.
 [[nodiscard]] std::vector<std::vector<std::byte>> decode_voxels(
     const TextureDesc& desc, const std::vector<AdaptiveBlock>& blocks,
-    const std::vector<HeldBrick>& held, Learner& learner);
+    const std::vector<HeldBrick>& held, BitModels& models);
 
 }  // namespace gicodec::reference

@@ -185,7 +185,7 @@ RC_GTEST_PROP(NativeRoundTrip, AnyUpdateOfSets, (std::uint64_t seed)) {
   const auto content = test::kContents[random() % std::size(test::kContents)];
   auto u = test::make_update(desc, content, false, test::pick(random, 1, 3), seed);
   if (!test::chance(random, 6)) test::sort_sets(u);
-  test::make_past(u, random, !test::chance(random, 6));
+  test::make_previous(u, random, !test::chance(random, 6));
   check_everything(u, {});
   RC_ASSERT(!testing::Test::HasFailure());
 }
@@ -231,7 +231,7 @@ TEST(NativeRoundTrip, SetsCostWhatTheirPlacesAre) {
   EXPECT_LE(size, 1.15 * ideal);
 }
 
-/// What is still there costs a flag, and nothing where there is nothing.
+/// A retained record costs a flag, and an empty mirror nothing.
 TEST(NativeRoundTrip, UpdatesOfSetsCostWhatIsNew) {
   const auto size = [](const test::UpdateCase& u) {
     return static_cast<double>(test::encode(u, {}, best_isa()).size());
@@ -468,7 +468,7 @@ TEST(NativeRoundTrip, VerticesOnAnyThreads) {
   }
 }
 
-/// Light is coded by the model of vertices, also what no vertex around tells of.
+/// Light is coded by the model of vertices, also without vertices around.
 TEST(NativeRoundTrip, VerticesAreCodedAdaptively) {
   for (const bool floats : {false, true}) {
     const auto desc = test::vertices({9, 7, 6}, floats);

@@ -1,4 +1,4 @@
-// Blocks of one row as the record model sees them: points that change like their kin, matrices that
+// Blocks of one row by the record model: points that change like similar ones, matrices that
 // turn.
 #include "native/content.h"
 #include "native/reference_decoder.h"
@@ -35,8 +35,8 @@ std::size_t size_of(const test::UpdateCase& u) {
   return payload.size();
 }
 
-/// Each point has one of eight normals; points of a normal change alike, or each as it likes.
-test::UpdateCase points(bool alike, bool move) {
+/// Each point has one of eight normals; points of a normal change in the same way, or at random.
+test::UpdateCase points(bool by_normal, bool move) {
   constexpr std::uint32_t kCells = 400;
   const auto volume = *ao_point_volume(kCells, 1, 1);
   const TextureDesc& desc = volume.sets[0].textures[0].desc;
@@ -59,7 +59,7 @@ test::UpdateCase points(bool alike, bool move) {
     const Component& visible = record.components[6];
     if (code_of(&mirror[at], record.components[0], record.bytes) == 0) continue;
     const std::uint32_t normal_code = code_of(&mirror[at], normal, record.bytes);
-    const auto which = alike ? normal_code : static_cast<std::uint32_t>(random() & 7);
+    const auto which = by_normal ? normal_code : static_cast<std::uint32_t>(random() & 7);
     if (which % 3 == 2) continue;
     const std::uint32_t by = which % 2 == 0 ? 8 * which : 0U - 8 * which;
     set(records, at, 6, (code_of(&mirror[at], visible, record.bytes) + by + 4) & 255);
@@ -69,9 +69,9 @@ test::UpdateCase points(bool alike, bool move) {
 }
 
 TEST(NativeRows, PointsChangeLikeTheirKin) {
-  const std::size_t alike = size_of(points(true, false));
-  EXPECT_LT(3 * alike, size_of(points(false, false)));
-  EXPECT_LT(alike, size_of(points(true, true)));
+  const std::size_t by_normal = size_of(points(true, false));
+  EXPECT_LT(3 * by_normal, size_of(points(false, false)));
+  EXPECT_LT(by_normal, size_of(points(true, true)));
 }
 
 /// Turning around y: two numbers, each of which is in a matrix twice, in several matrices.

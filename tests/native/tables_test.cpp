@@ -1,7 +1,7 @@
-// The tables: the published numbers, what is built from them, and fits of new members.
+// The tables: the published numbers, what is built from them, and fits of new distributions.
 #include "native/tables.h"
 
-#include "native/member_fit.h"
+#include "native/distribution_fit.h"
 #include "native/table_data.h"
 #include "support.h"
 
@@ -27,10 +27,10 @@ std::string read(const char* path) {
 }
 
 /// Any that is valid, of few and of many symbols.
-Member any_member(test::Random& random) {
-  Member m{static_cast<std::uint8_t>(test::pick(random, 0, kMaxUnit)),
-           static_cast<std::uint8_t>(test::pick(random, 0, kMaxShift)),
-           {}};
+Distribution any_distribution(test::Random& random) {
+  Distribution m{static_cast<std::uint8_t>(test::pick(random, 0, kMaxUnit)),
+                 static_cast<std::uint8_t>(test::pick(random, 0, kMaxShift)),
+                 {}};
   m.units[kEscape] = 1;
   const unsigned most = test::chance(random, 3) ? kEscape : test::pick(random, 0, kEscape);
   unsigned left = test::chance(random, 3) ? 254 : test::pick(random, 0, 254);
@@ -48,23 +48,23 @@ TEST(NativeTables, DataIsSound) {
   const std::uint16_t* next = kTableNumbers;
   for (unsigned role = 0; role < kRoles; ++role) {
     for (unsigned set = 0; set < kSets; ++set) {
-      for (unsigned m = 0; m < kMembers; ++m) {
-        const Member& member = member_of(role, set, m);
-        EXPECT_TRUE(valid(member)) << role << " " << set << " " << m;
-        EXPECT_EQ(*next++, member.unit);
-        EXPECT_EQ(*next++, member.shift);
-        for (const auto units : member.units) ASSERT_EQ(*next++, units);
+      for (unsigned m = 0; m < kDistributions; ++m) {
+        const Distribution& distribution = distribution_of(role, set, m);
+        EXPECT_TRUE(valid(distribution)) << role << " " << set << " " << m;
+        EXPECT_EQ(*next++, distribution.unit);
+        EXPECT_EQ(*next++, distribution.shift);
+        for (const auto units : distribution.units) ASSERT_EQ(*next++, units);
       }
-      for (const auto member : role_tables(role, set).map) {
-        EXPECT_LT(member, kMembers);
-        ASSERT_EQ(*next++, member);
+      for (const auto distribution : role_tables(role, set).map) {
+        EXPECT_LT(distribution, kDistributions);
+        ASSERT_EQ(*next++, distribution);
       }
     }
   }
   for (const bool update : {false, true}) {
     for (unsigned set = 0; set < kSets; ++set) {
-      const HitTables& tables = hit_tables(update, set);
-      for (unsigned m = 0; m < kMembers; ++m, next += 2) {
+      const RepeatTables& tables = repeat_tables(update, set);
+      for (unsigned m = 0; m < kDistributions; ++m, next += 2) {
         EXPECT_LE(1, next[0]);
         EXPECT_LT(next[0], next[1]);
         EXPECT_LE(next[1], 4095);
@@ -72,9 +72,9 @@ TEST(NativeTables, DataIsSound) {
           ASSERT_EQ(tables.low[k][m] | tables.high[k][m] << 8, next[k]);
         }
       }
-      for (const auto member : tables.map) {
-        EXPECT_LT(member, kMembers);
-        ASSERT_EQ(*next++, member);
+      for (const auto distribution : tables.map) {
+        EXPECT_LT(distribution, kDistributions);
+        ASSERT_EQ(*next++, distribution);
       }
     }
   }
@@ -93,8 +93,8 @@ TEST(NativeTables, ThePageNamesTheirChecksum) {
   EXPECT_EQ(found[1], expected) << "docs/native.md, section 8, should say `" << expected << "`";
 }
 
-TEST(NativeTables, ValidMembers) {
-  Member m{4, 7, {}};
+TEST(NativeTables, ValidDistributions) {
+  Distribution m{4, 7, {}};
   EXPECT_FALSE(valid(m));
   m.units[kEscape] = 1;
   EXPECT_TRUE(valid(m));
@@ -118,10 +118,10 @@ TEST(NativeTables, CodesOfValues) {
   test::Random random(5);
   RoleTables tables{};
   for (int round = 0; round < 40; ++round) {
-    const Member m = any_member(random);
+    const Distribution m = any_distribution(random);
     ASSERT_TRUE(valid(m));
-    const unsigned number = test::pick(random, 0, kMembers - 1);
-    build_member(m, number, tables);
+    const unsigned number = test::pick(random, 0, kDistributions - 1);
+    build_distribution(m, number, tables);
     for (unsigned value = 0; value <= 0xFFFF; ++value) {
       unsigned symbol = kEscape;
       for (unsigned s = 0; s < kSymbols; ++s) {
@@ -151,7 +151,7 @@ TEST(NativeTables, CostsAreLogarithms) {
   for (unsigned f = 2; f <= 4096; ++f) EXPECT_LE(frequency_cost(f), frequency_cost(f - 1));
 }
 
-std::uint64_t cost(const std::uint32_t (&counts)[kBins], const Member& m) {
+std::uint64_t cost(const std::uint32_t (&counts)[kBins], const Distribution& m) {
   std::uint64_t sum = 0;
   for (unsigned bin = 0; bin <= bin_of(0xFFFF); ++bin) {
     sum += std::uint64_t{counts[bin]} * static_cast<std::uint64_t>(price_of(m, bin));
@@ -159,7 +159,7 @@ std::uint64_t cost(const std::uint32_t (&counts)[kBins], const Member& m) {
   return sum;
 }
 
-/// Counts of few bins, of many, or as a member would have them.
+/// Counts of few bins, of many, or as a distribution would have them.
 void any_counts(test::Random& random, std::uint32_t (&counts)[kBins]) {
   std::fill(std::begin(counts), std::end(counts), 0U);
   const unsigned values = 1U << test::pick(random, 0, 12);
@@ -172,23 +172,23 @@ void any_counts(test::Random& random, std::uint32_t (&counts)[kBins]) {
 }
 
 /// Valid, and little is gained by any other: by escapes alone, or by those of the tables.
-TEST(NativeTables, FittedMembers) {
+TEST(NativeTables, FittedDistributions) {
   test::Random random(6);
-  Member escapes{4, 0, {}};
+  Distribution escapes{4, 0, {}};
   escapes.units[kEscape] = 255;
   std::uint32_t counts[kBins] = {};
-  EXPECT_TRUE(valid(fit_member(counts)));
+  EXPECT_TRUE(valid(fit_distribution(counts)));
   for (int round = 0; round < 400; ++round) {
     any_counts(random, counts);
-    const Member fitted = fit_member(counts);
+    const Distribution fitted = fit_distribution(counts);
     ASSERT_TRUE(valid(fitted)) << round;
     ++counts[0];  // The value that a fit always allows for.
     std::uint64_t least = cost(counts, escapes);
     const std::uint64_t own = cost(counts, fitted);
     for (unsigned role = 0; role < kRoles; ++role) {
       for (unsigned set = 0; set < kSets; ++set) {
-        for (unsigned m = 0; m < kMembers; ++m) {
-          least = std::min(least, cost(counts, member_of(role, set, m)));
+        for (unsigned m = 0; m < kDistributions; ++m) {
+          least = std::min(least, cost(counts, distribution_of(role, set, m)));
         }
       }
     }

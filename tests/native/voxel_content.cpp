@@ -267,9 +267,9 @@ UpdateCase make_voxel_update(const TextureDesc& desc, VoxelContent content, Upda
   const std::size_t size = block_bytes(desc), said = presence_bytes(desc);
   Random random(seed);
   if (mode != UpdateMode::keyframe) {
-    BrickPool past = make_voxels(desc, content, 0, seed);
-    u.mirror = std::move(past.records);
-    u.mirror_presence = std::move(past.presence);
+    BrickPool previous = make_voxels(desc, content, 0, seed);
+    u.mirror = std::move(previous.records);
+    u.mirror_presence = std::move(previous.presence);
     forget_some(u, random);
   }
   const BrickPool now = make_voxels(desc, content, 1, seed);

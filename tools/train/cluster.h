@@ -37,9 +37,9 @@ struct Choice {
 template <typename Fit, typename Cost, typename Model>
 std::vector<Items> settle(std::size_t items, const Fit& fit, const Cost& cost,
                           std::vector<Model>& models) {
-  constexpr unsigned kMostRounds = 30;
+  constexpr unsigned kMaxRounds = 30;
   std::vector<Items> before(models.size());
-  for (unsigned round = 0; round < kMostRounds; ++round) {
+  for (unsigned round = 0; round < kMaxRounds; ++round) {
     std::vector<Items> owned(models.size());
     for (std::size_t i = 0; i < items; ++i) owned[Choice(i, cost, models).model].push_back(i);
     if (owned == before) break;

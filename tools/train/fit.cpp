@@ -1,7 +1,7 @@
 #include "train/fit.h"
 
 #include "base/parallel.h"
-#include "native/member_fit.h"
+#include "native/distribution_fit.h"
 #include "train/cluster.h"
 #include "train/prior.h"
 
@@ -30,16 +30,16 @@ double cost(const Weights& weights, const Bits& bits) {
 /// Raw bits that no distribution saves.
 constexpr unsigned inner_bits(unsigned bin) { return bin < 8 ? 0 : (bin - 8) / 4 + 1; }
 
-void fit_member(const Weights& weights, native::Member& out) {
+void fit_distribution(const Weights& weights, native::Distribution& out) {
   constexpr double kScale = 1 << 28;
   std::uint32_t counts[native::kBins];
   const double scale = kScale / std::max(sum(weights), 1e-9);
   for (unsigned b = 0; b < native::kBins; ++b) {
     counts[b] = static_cast<std::uint32_t>(std::lround(weights[b] * scale));
   }
-  out = native::fit_member(counts);
+  out = native::fit_distribution(counts);
 }
-void fit_member(const Weights& weights, HitEnds& out) {
+void fit_distribution(const Weights& weights, RepeatEnds& out) {
   constexpr auto kWhole = native::kProbabilityScale;
   const double scale = kWhole / std::max(sum(weights), 1e-9);
   const auto slots = [&](unsigned symbol) {
@@ -50,25 +50,25 @@ void fit_member(const Weights& weights, HitEnds& out) {
   out = {static_cast<std::uint16_t>(end0), static_cast<std::uint16_t>(end1)};
 }
 
-Bits bits_of(const native::Member& member) {
+Bits bits_of(const native::Distribution& distribution) {
   Bits bits{};
   for (unsigned b = 0; b <= native::bin_of(0xFFFF); ++b) {
-    bits[b] = native::price_of(member, b) / 256.0F;
+    bits[b] = native::price_of(distribution, b) / 256.0F;
   }
   return bits;
 }
-Bits bits_of(const HitEnds& m) {
+Bits bits_of(const RepeatEnds& m) {
   Bits bits{};
   const unsigned slots[] = {m.end0, unsigned{m.end1} - m.end0, native::kProbabilityScale - m.end1};
   for (unsigned s = 0; s < 3; ++s) bits[s] = native::frequency_cost(slots[s]) / 256.0F;
   return bits;
 }
 /// Of an ideal code.
-Bits bits_of(const Weights& p, bool hits) {
+Bits bits_of(const Weights& p, bool repeats) {
   Bits bits;
   for (unsigned b = 0; b < native::kBins; ++b) {
     bits[b] = static_cast<float>(-std::log2(std::max(p[b], 1e-6)));
-    if (!hits) bits[b] += static_cast<float>(inner_bits(b));
+    if (!repeats) bits[b] += static_cast<float>(inner_bits(b));
   }
   return bits;
 }
@@ -86,21 +86,22 @@ double cost(const Histogram& h, const Code& code) {
 
 Code ideal_code(Subject subject, const Pool& pool) {
   Code code;
-  for (const auto& p : smooth(subject, pool)) code.bits.push_back(bits_of(p, subject >= kHits));
+  for (const auto& p : smooth(subject, pool))
+    code.bits.push_back(bits_of(p, subject >= kRepeatTables));
   std::iota(code.map.begin(), code.map.end(), std::uint8_t{0});
   return code;
 }
 
 /// A distribution and its costs.
-template <typename Member>
+template <typename Distribution>
 struct Priced {
-  Member member;
+  Distribution distribution;
   Bits bits;
 };
 
-/// The members of a pool's contexts.
-template <typename Member>
-Family<Member> fit_family(Subject subject, const Pool& pool) {
+/// The distributions of a pool's contexts.
+template <typename Distribution>
+DistributionTables<Distribution> fit_family(Subject subject, const Pool& pool) {
   auto items = smooth(subject, pool);
   for (unsigned c = 0; c < native::kContexts; ++c) {
     // Contexts that do not occur choose, but have no say.
@@ -112,30 +113,33 @@ Family<Member> fit_family(Subject subject, const Pool& pool) {
     for (const auto i : owned) {
       for (unsigned b = 0; b < native::kBins; ++b) all[b] += items[i][b];
     }
-    Priced<Member> m;
-    fit_member(all, m.member);
-    m.bits = bits_of(m.member);
+    Priced<Distribution> m;
+    fit_distribution(all, m.distribution);
+    m.bits = bits_of(m.distribution);
     return m;
   };
-  const auto price = [&](std::size_t i, const Priced<Member>& m) { return cost(items[i], m.bits); };
-  auto members = cluster(items.size(), native::kMembers, fit, price);
-  Family<Member> family;
-  std::ranges::transform(members, family.member.begin(), &Priced<Member>::member);
+  const auto price = [&](std::size_t i, const Priced<Distribution>& m) {
+    return cost(items[i], m.bits);
+  };
+  auto distributions = cluster(items.size(), native::kDistributions, fit, price);
+  DistributionTables<Distribution> family;
+  std::ranges::transform(distributions, family.distribution.begin(),
+                         &Priced<Distribution>::distribution);
   for (unsigned c = 0; c < native::kContexts; ++c) {
-    family.map[c] = static_cast<std::uint8_t>(Choice(c, price, members).model);
+    family.map[c] = static_cast<std::uint8_t>(Choice(c, price, distributions).model);
   }
   return family;
 }
 
-template <typename Member>
-Code code_of(const Family<Member>& family) {
+template <typename Distribution>
+Code code_of(const DistributionTables<Distribution>& family) {
   Code code{{}, family.map};
-  for (const auto& m : family.member) code.bits.push_back(bits_of(m));
+  for (const auto& m : family.distribution) code.bits.push_back(bits_of(m));
   return code;
 }
 Code family_code(Subject subject, const Pool& pool) {
-  return subject >= kHits ? code_of(fit_family<HitEnds>(subject, pool))
-                          : code_of(fit_family<native::Member>(subject, pool));
+  return subject >= kRepeatTables ? code_of(fit_family<RepeatEnds>(subject, pool))
+                                  : code_of(fit_family<native::Distribution>(subject, pool));
 }
 
 /// What each histogram counts for, so that textures of few bits have their say.
@@ -191,18 +195,18 @@ void fit(const std::array<std::vector<Histogram>, kSubjects>& histograms, unsign
   for_each_item(threads, kSubjects, [&](unsigned, std::size_t subject) {
     pools[subject] = cluster_sets(Subject(subject), histograms[subject]);
   });
-  for (unsigned kind = 1; kind < kHits - kModes; ++kind) {
+  for (unsigned kind = 1; kind < kRepeatTables - kModes; ++kind) {
     for (unsigned set = 0; set < native::kSets; ++set) {
       pools[kModes][set].add(pools[kModes + kind][set]);
     }
   }
   for (unsigned set = 0; set < native::kSets; ++set) {
     for (unsigned role = 0; role < native::kRoles; ++role) {
-      model.role[role][set] = fit_family<native::Member>(Subject(role), pools[role][set]);
+      model.role[role][set] = fit_family<native::Distribution>(Subject(role), pools[role][set]);
     }
     for (unsigned update = 0; update < 2; ++update) {
-      model.hits[update][set] =
-          fit_family<HitEnds>(Subject(kHits + update), pools[kHits + update][set]);
+      model.repeats[update][set] = fit_family<RepeatEnds>(Subject(kRepeatTables + update),
+                                                          pools[kRepeatTables + update][set]);
     }
   }
 }

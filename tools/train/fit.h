@@ -9,24 +9,24 @@
 
 namespace gicodec::train {
 
-struct HitEnds {
+struct RepeatEnds {
   std::uint16_t end0, end1;
 };
 
 /// A few distributions, and the one of each context.
-template <typename Member>
-struct Family {
-  std::array<Member, native::kMembers> member;
+template <typename Distribution>
+struct DistributionTables {
+  std::array<Distribution, native::kDistributions> distribution;
   std::array<std::uint8_t, native::kContexts> map;
 };
 
 struct Model {
-  Family<native::Member> role[native::kRoles][native::kSets];
-  Family<HitEnds> hits[2][native::kSets];
+  DistributionTables<native::Distribution> role[native::kRoles][native::kSets];
+  DistributionTables<RepeatEnds> repeats[2][native::kSets];
 };
 
-/// Clusters each subject's histograms to sets and each set's contexts to members. Tells on standard
-/// error what all of that takes.
+/// Clusters each subject's histograms to sets and each set's contexts to distributions. Tells on
+/// standard error what all of that takes.
 void fit(const std::array<std::vector<Histogram>, kSubjects>& histograms, unsigned threads,
          Model& model);
 

@@ -7,17 +7,17 @@ namespace gicodec::train {
 
 Subject subject_of(bool pairs, bool update, unsigned place) {
   if (place == native::kModePlace) return Subject(kModes + 2U * pairs + update);
-  if (pairs && place == native::kHitPlace) return Subject(kHits + unsigned{update});
+  if (pairs && place == native::kRepeatPlace) return Subject(kRepeatTables + unsigned{update});
   return Subject(kResiduals + native::role_of(pairs, update, place));
 }
 
 void Counter::add(const native::Step* begin, const native::Step* end) {
   for (const auto* s = begin; s != end; ++s) {
-    const bool hits = pairs_ && s->place == native::kHitPlace;
+    const bool repeats = pairs_ && s->place == native::kRepeatPlace;
     Counts* const counts = counts_.data() + s->place * native::kContexts;
     for (std::uint32_t rest = s->active; rest != 0; rest &= rest - 1) {
       const auto l = static_cast<unsigned>(std::countr_zero(rest));
-      ++counts[s->context[l]][hits ? s->value[l] : native::bin_of(s->value[l])];
+      ++counts[s->context[l]][repeats ? s->value[l] : native::bin_of(s->value[l])];
     }
   }
 }

@@ -10,16 +10,16 @@
 
 namespace gicodec::train {
 
-/// What is clustered on its own: the native codec's roles, but modes by what has them, and hits.
+/// What is clustered on its own: the native codec's roles, but modes by what has them, and repeats.
 enum Subject : unsigned {
   kResiduals = 0,              ///< one by role
   kModes = native::kModeRole,  ///< of keyframes and updates, planes, then pairs
-  kHits = kModes + 4,          ///< of keyframes and updates
-  kSubjects = kHits + 2,
+  kRepeatTables = kModes + 4,  ///< of keyframes and updates
+  kSubjects = kRepeatTables + 2,
 };
 Subject subject_of(bool pairs, bool update, unsigned place);
 
-using Counts = std::array<std::uint32_t, native::kBins>;  ///< by bin; of hits by symbol
+using Counts = std::array<std::uint32_t, native::kBins>;  ///< by bin; of repeats by symbol
 
 /// A subject's counts in one frame of one texture.
 struct Histogram {

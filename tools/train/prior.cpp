@@ -23,7 +23,7 @@ Weights geometric(const native::Thresholds& thresholds, unsigned magnitude) {
 
 Weights prior(Subject subject, bool wide, unsigned context) {
   Weights w{};
-  if (subject >= kHits) {
+  if (subject >= kRepeatTables) {
     w[0] = 1 + context / 5;  // the score
     w[1] = w[2] = 1;
   } else if (subject >= kModes) {
@@ -43,7 +43,7 @@ Weights prior(Subject subject, bool wide, unsigned context) {
 
 /// Contexts of one group are alike: all classes, or all votes.
 unsigned group_of(Subject subject, unsigned context) {
-  if (subject >= kHits) return context / 5;
+  if (subject >= kRepeatTables) return context / 5;
   return subject >= kModes ? context : context % native::kClassStep;
 }
 

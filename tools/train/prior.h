@@ -8,7 +8,7 @@
 
 namespace gicodec::train {
 
-using Weights = std::array<double, native::kBins>;  ///< by bin; of hits by symbol
+using Weights = std::array<double, native::kBins>;  ///< by bin; of repeats by symbol
 
 /// Counts of several histograms of one subject.
 struct Pool {

@@ -26,20 +26,20 @@ class Writer {
   std::size_t column_ = 0;
 };
 
-void write(const native::Member& m, Writer& w) {
+void write(const native::Distribution& m, Writer& w) {
   w.number(m.unit);
   w.number(m.shift);
   for (const auto units : m.units) w.number(units);
   w.end_line();
 }
-void write(const HitEnds& m, Writer& w) {
+void write(const RepeatEnds& m, Writer& w) {
   w.number(m.end0);
   w.number(m.end1);
   w.end_line();
 }
-template <typename Member>
-void write(const Family<Member>& family, unsigned contexts, Writer& w) {
-  for (const auto& m : family.member) write(m, w);
+template <typename Distribution>
+void write(const DistributionTables<Distribution>& family, unsigned contexts, Writer& w) {
+  for (const auto& m : family.distribution) write(m, w);
   for (const auto m : std::span(family.map).first(contexts)) w.number(m);
   w.end_line();
 }
@@ -51,8 +51,8 @@ std::string to_text(const Model& model) {
   for (const auto& role : model.role) {
     for (const auto& family : role) write(family, native::kContexts, w);
   }
-  for (const auto& kind : model.hits) {
-    for (const auto& family : kind) write(family, native::kHitContexts, w);
+  for (const auto& kind : model.repeats) {
+    for (const auto& family : kind) write(family, native::kRepeatContexts, w);
   }
   return w.finish();
 }

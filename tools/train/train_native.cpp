@@ -41,7 +41,7 @@ std::vector<std::byte> all_cores(const tools::Dump& dump, std::vector<std::uint3
   return cores;
 }
 
-constexpr unsigned kMostNarrowBits = 11;
+constexpr unsigned kMaxNarrowBits = 11;
 
 using Histograms = std::array<std::vector<Histogram>, kSubjects>;
 
@@ -56,7 +56,7 @@ void observe(const EncodeJob& job, Histograms& out) {
   native::PayloadMemory memory;
   std::vector<std::byte> payload;
   native::encode_payload(job, settings, best_isa(), memory, payload);
-  counter.finish(layout.pairs || layout.plane[0].bits > kMostNarrowBits, out);
+  counter.finish(layout.pairs || layout.plane[0].bits > kMaxNarrowBits, out);
 }
 
 void read_sequence(const tools::Sequence& sequence, Histograms& out) {

@@ -1,4 +1,4 @@
-// The records of a chunk by a model that learns, in either direction: one source for both.
+// The records of a chunk by an adaptive model, in either direction: one source for both.
 #pragma once
 
 #include "base/binary_coder.h"
@@ -30,7 +30,7 @@ struct ChunkCoding {
     return decoded.subspan(position * update.block_bytes(), update.block_bytes());
   }
   /// What the mirror has of the block; nothing in keyframes.
-  [[nodiscard]] std::span<const std::byte> past(std::uint32_t position) const {
+  [[nodiscard]] std::span<const std::byte> previous(std::uint32_t position) const {
     if (!update.update) return {};
     return update.mirror.blocks[update.probes[position]];
   }
@@ -39,7 +39,7 @@ struct ChunkCoding {
     if (!update.partial()) return {};
     return update.presence_of(position);
   }
-  /// Whether another block is worth coding. Models ask after each.
+  /// Whether to code another block. Models call it after each.
   [[nodiscard]] bool goes_on() const {
     if constexpr (Coder::kDecodes) {
       return !coder.overrun() && !update.cancelled();

@@ -69,7 +69,7 @@ Status decode_adaptive(const Update& u, std::span<const std::uint32_t> positions
                        std::span<const std::byte> bytes, std::span<std::byte> records,
                        ModelMemory& memory) {
   BinaryDecoder coder(bytes);
-  const bool sound = code(ChunkCoding<BinaryDecoder>{.update = u,
+  const bool valid = code(ChunkCoding<BinaryDecoder>{.update = u,
                                                      .positions = positions,
                                                      .records = {records.data(), u.block_bytes()},
                                                      .decoded = records,
@@ -77,7 +77,7 @@ Status decode_adaptive(const Update& u, std::span<const std::uint32_t> positions
                                                      .memory = memory});
   if (u.cancelled()) return Status::cancelled;
   if (coder.overrun()) return Status::truncated;
-  return sound && coder.ended() ? Status::ok : Status::corrupt;
+  return valid && coder.ended() ? Status::ok : Status::corrupt;
 }
 
 }  // namespace gicodec::native

@@ -1,5 +1,5 @@
 // What native makes of the models of textures: a row of a table each. Adaptive chunks
-// (docs/native.md, "Adaptive chunks"): records by models that learn as they go, instead of static
+// (docs/native.md, "Adaptive chunks"): records by models that adapt, instead of static
 // tables; slow and small. Each such model is a folder of its name.
 #pragma once
 
@@ -31,7 +31,7 @@ struct ModelRow {
   Model model;
   bool neighbours;  ///< the blocks at x−1, y−1 and z−1 predict; else every chunk is flat
   Adapts adapts;
-  std::uint32_t chunk_records;  ///< that an adaptive chunk should have, to learn enough from them
+  std::uint32_t chunk_records;  ///< that an adaptive chunk should have, to adapt enough
 };
 
 /// That of Model::none where records are none that the texture's model is made for.

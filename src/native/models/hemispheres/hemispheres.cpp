@@ -11,11 +11,11 @@ bool code_hemispheres(const ChunkCoding<Coder>& chunk) {
   model.reset(chunk.update.desc.record, chunk.memory.values);
   for (std::size_t i = 0; i < chunk.positions.size(); ++i) {
     const std::uint32_t position = chunk.positions[i];
-    auto past = chunk.past(position);
-    if (is_zero(past)) past = {};
+    auto previous = chunk.previous(position);
+    if (is_zero(previous)) previous = {};
     const KnownLights around =
-        known_around(chunk.update, chunk.positions, i, chunk.records, !past.empty());
-    model.code(chunk.coder, around, past, chunk.in(position), chunk.out(position));
+        known_around(chunk.update, chunk.positions, i, chunk.records, !previous.empty());
+    model.code(chunk.coder, around, previous, chunk.in(position), chunk.out(position));
     if (!chunk.goes_on()) return false;
   }
   return true;

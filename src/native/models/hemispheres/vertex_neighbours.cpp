@@ -23,7 +23,7 @@ struct Range {
 
 /// Positions in a chunk of the vertices of one row around; where each stands in the list.
 struct Row {
-  bool looked = false;
+  bool searched = false;
   std::array<std::int32_t, kSide> at{};  // -1: not listed
 };
 
@@ -38,8 +38,8 @@ KnownLights known_around(const Update& u, std::span<const std::uint32_t> positio
   std::array<Row, kSide * kSide> rows;
   const auto listed = [&](const NearbyOffset& o, std::int64_t index) {
     Row& row = rows[static_cast<std::size_t>((o.z + kReach) * kSide + o.y + kReach)];
-    if (!row.looked) {
-      row.looked = true;
+    if (!row.searched) {
+      row.searched = true;
       row.at.fill(-1);
       const std::int64_t first = index - o.x - kReach;
       const auto less = [&](std::uint32_t position, std::int64_t b) {
@@ -63,19 +63,19 @@ KnownLights known_around(const Update& u, std::span<const std::uint32_t> positio
         std::int64_t{block} + o.x + std::int64_t{grid.x} * (o.y + std::int64_t{grid.y} * o.z);
     const auto other = static_cast<std::uint32_t>(index);
     const std::int32_t place = listed(o, index);
-    KnownLights::Other& vertex = known.other[known.count];
+    KnownLights::Neighbour& vertex = known.other[known.count];
     if (place >= 0) {
       if (static_cast<std::size_t>(place) >= at) continue;
       vertex.now = records[positions[static_cast<std::size_t>(place)]].data();
-      vertex.past = u.update ? u.mirror.blocks[other].data() : nullptr;
+      vertex.previous = u.update ? u.mirror.blocks[other].data() : nullptr;
     } else {
       if (listed_only || !u.mirrored || !u.mirror.is_received(other)) continue;
       vertex.now = u.mirror.blocks[other].data();
-      vertex.past = nullptr;
+      vertex.previous = nullptr;
     }
     vertex.distance = o.distance;
     vertex.dark = is_zero({vertex.now, u.block_bytes()});
-    if (++known.count == KnownLights::kMost) break;
+    if (++known.count == KnownLights::kMax) break;
   }
   return known;
 }

@@ -33,24 +33,24 @@ template <int Reach, std::size_t Count>
 }
 
 struct KnownLights {
-  static constexpr unsigned kMost = 16, kChildren = 8;
+  static constexpr unsigned kMax = 16, kChildren = 8;
   /// The records of six hemispheres.
-  struct Other {
+  struct Neighbour {
     const std::byte* now = nullptr;
-    const std::byte* past = nullptr;  ///< of what the update lists; null: none
-    std::uint32_t distance = 0;       ///< squared, 1 to 9
-    bool dark = false;                ///< all zero now
-    std::uint8_t lit = 0;             ///< of voxels, the hemispheres with colours, by bit
+    const std::byte* previous = nullptr;  ///< its mirror value, if the update lists it; null: none
+    std::uint32_t distance = 0;           ///< squared, 1 to 9
+    bool dark = false;                    ///< all zero now
+    std::uint8_t lit = 0;                 ///< of voxels, the hemispheres with colours, by bit
   };
   unsigned count = 0;
-  std::array<Other, kMost> other{};  ///< by distance
+  std::array<Neighbour, kMax> other{};  ///< by distance
 
-  /// The voxel of the next level around one, which is the mean of those in it.
-  struct Family {
-    Other parent{};                         ///< without `now` if it is not known
-    unsigned children = 0, coded = 0;       ///< that exist; that come before this one
-    std::array<Other, kChildren> before{};  ///< those
-    /// Hemispheres with colours of all children, in order, as far as they were told.
+  /// The voxel of the next level that contains a voxel, which is the mean of those in it.
+  struct Siblings {
+    Neighbour parent{};                         ///< without `now` if it is not known
+    unsigned children = 0, coded = 0;           ///< that exist; that come before this one
+    std::array<Neighbour, kChildren> before{};  ///< those
+    /// Hemispheres with colours of all children, in order, as far as their occupancy was coded.
     std::array<std::uint8_t, kChildren> lit{};
 
     /// Children with colours in hemisphere h before this one, and from this one on.
@@ -64,11 +64,11 @@ struct KnownLights {
       return sum;
     }
   };
-  Family family{};
+  Siblings siblings{};
 };
 
-/// What is told of the voxels of a family before their light.
-struct ToldLight {
+/// What is coded of sibling voxels before their light.
+struct LightOccupancy {
   bool any = false;      ///< not all zero
   std::uint8_t lit = 0;  ///< hemispheres with colours, by bit
 };

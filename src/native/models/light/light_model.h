@@ -1,9 +1,9 @@
 // Light over six hemispheres, at vertices and voxels (docs/native.md, "Vertices", "Voxels"): each
-// by those around, weighted by how alike their other hemispheres are; of vertices, the second of
+// by those around, weighted by how similar their other hemispheres are; of vertices, the second of
 // two opposite ones also by what all pairs sum up to.
 #pragma once
 
-#include "native/models/light/light_guesses.h"
+#include "native/models/light/light_predictors.h"
 #include "native/value_model.h"
 
 namespace gicodec::native {
@@ -13,19 +13,19 @@ class LightModel {
  public:
   /// Before the first light of a chunk; `values` must outlive its last.
   void reset(const Record& record, ValueModel& values);
-  /// One vertex, from `in` or into `out`. `past`: what the mirror has of it, empty in keyframes and
-  /// where it has no light.
+  /// One vertex, from `in` or into `out`. `previous`: what the mirror has of it, empty in keyframes
+  /// and where it has no light.
   template <typename Coder>
-  void code(Coder& coder, const KnownLights& around, std::span<const std::byte> past,
+  void code(Coder& coder, const KnownLights& around, std::span<const std::byte> previous,
             std::span<const std::byte> in, std::span<std::byte> out);
-  /// What is told of a voxel before the light of its family; of `in` or of what is read.
+  /// The occupancy of a voxel, which comes before the light of its siblings: of `in`, or as read.
   template <typename Coder>
-  ToldLight tell(Coder& coder, const KnownLights& around, std::span<const std::byte> past,
-                 std::span<const std::byte> in);
-  /// The light of a voxel of which that was told: any.
+  LightOccupancy code_occupancy(Coder& coder, const KnownLights& around,
+                                std::span<const std::byte> previous, std::span<const std::byte> in);
+  /// The light of a voxel whose occupancy is not empty.
   template <typename Coder>
-  void code(Coder& coder, ToldLight told, const KnownLights& around,
-            std::span<const std::byte> past, std::span<const std::byte> in,
+  void code(Coder& coder, LightOccupancy occupancy, const KnownLights& around,
+            std::span<const std::byte> previous, std::span<const std::byte> in,
             std::span<std::byte> out);
 
  private:
@@ -47,18 +47,19 @@ class LightModel {
   void learn(unsigned h, const HemisphereLight& light);
 
   ValueModel* values_ = nullptr;
-  LightForm form_{Record{}};
-  LightGuesses::Codes last_{};  ///< the last one with light in the chunk
+  LightEncoding encoding_{Record{}};
+  LightPredictors::Codes last_{};  ///< the last one with light in the chunk
   bool any_ = false;
   std::uint32_t same_before_ = 0;  ///< hemispheres of the last one that were as before, by bit
 
   // Of the one that is coded.
-  LightGuesses guesses_;
-  LightGuesses::Codes past_{};  ///< if it has one
+  LightPredictors predictors_;
+  LightPredictors::Codes previous_{};  ///< if it has one
   bool known_ = false;
-  std::array<HemisphereLight, kHemispheres> light_{};            ///< as it was coded
-  std::array<std::array<std::int64_t, 2>, kHemispheres> off_{};  ///< residuals of directions
-  std::array<std::int64_t, kHemispheres> off_exponent_{}, off_green_{};
+  std::array<HemisphereLight, kHemispheres> light_{};  ///< as it was coded
+  std::array<std::array<std::int64_t, 2>, kHemispheres>
+      direction_residual_{};  ///< residuals of directions
+  std::array<std::int64_t, kHemispheres> exponent_residual_{}, green_residual_{};
 };
 
 }  // namespace gicodec::native

@@ -8,10 +8,10 @@ namespace {
 constexpr std::int64_t kSnormUnit = 132104;  // 2^24 / 127
 constexpr int kSharedShift = 27;
 constexpr int kColorShift = 35;  // of a float's 1, which its fraction is part of
-constexpr std::int32_t kMostMantissa = 511;
+constexpr std::int32_t kMaxMantissa = 511;
 constexpr unsigned kFloatFraction = 23, kHalfFraction = 10;
 
-/// Floats of that many bits as numbers of the same order, zeros of both signs apart.
+/// Floats of that many bits as numbers of the same order, zeros of both signs distinct.
 std::int32_t ordered(std::uint32_t bits, unsigned of) {
   const std::uint32_t sign = 1U << (of - 1);
   return static_cast<std::int32_t>((bits & sign) != 0 ? ~(bits & (sign - 1)) : bits);
@@ -33,7 +33,7 @@ Parts parts_of(std::uint32_t bits, unsigned fraction) {
   const std::int64_t below = bits & ((1U << fraction) - 1);
   return exponent == 0 ? Parts{1, below} : Parts{exponent, below | 1 << fraction};
 }
-/// The float below a mantissa of any width times 2^exponent, as parts_of() tells them.
+/// The float below a mantissa of any width times 2^exponent, as parts_of() returns them.
 std::uint32_t to_bits(std::int64_t mantissa, int exponent, unsigned fraction) {
   const bool half = fraction == kHalfFraction;
   const int excess = static_cast<int>(width_of(mantissa)) - static_cast<int>(fraction + 1);
@@ -49,7 +49,7 @@ std::uint32_t to_bits(std::int64_t mantissa, int exponent, unsigned fraction) {
 
 std::int64_t shifted(std::int64_t value, int left) {
   if (left < 0 || value == 0) return left < -62 ? 0 : value >> std::max(-left, 0);
-  return static_cast<int>(width_of(value)) + left > 41 ? kMostColor : value << left;
+  return static_cast<int>(width_of(value)) + left > 41 ? kMaxColor : value << left;
 }
 
 std::uint32_t word_at(const std::byte* at) {
@@ -63,7 +63,7 @@ void put_word(std::uint32_t bits, std::byte* at) {
 
 }  // namespace
 
-LightForm::LightForm(const Record& record)
+LightEncoding::LightEncoding(const Record& record)
     : bytes_(record.bytes),
       shared_(record.bytes == 7 || record.bytes == 4),
       directed_(record.bytes == 7 || record.bytes == 24),
@@ -72,7 +72,7 @@ LightForm::LightForm(const Record& record)
                               : 16),
       fraction_(directed_ ? kFloatFraction : kHalfFraction) {}
 
-std::uint8_t LightForm::lit(const std::byte* records) const {
+std::uint8_t LightEncoding::lit(const std::byte* records) const {
   constexpr std::size_t kColorBytes = 6;  // of halves, before alpha
   std::uint8_t lit = 0;
   for (unsigned h = 0; h < kHemispheres; ++h) {
@@ -83,7 +83,7 @@ std::uint8_t LightForm::lit(const std::byte* records) const {
   return lit;
 }
 
-LightCodes LightForm::read(const std::byte* record) const {
+LightCodes LightEncoding::read(const std::byte* record) const {
   LightCodes codes;
   if (alpha()) {
     const std::array<std::uint32_t, 2> words{word_at(record), word_at(record + 4)};
@@ -97,7 +97,7 @@ LightCodes LightForm::read(const std::byte* record) const {
   const std::uint32_t first = word_at(record);
   for (unsigned i = 0; i < 3; ++i) {
     if (shared_) {
-      codes.color[i] = static_cast<std::int32_t>(first >> (9 * i) & kMostMantissa);
+      codes.color[i] = static_cast<std::int32_t>(first >> (9 * i) & kMaxMantissa);
       if (directed_) codes.direction[i] = static_cast<std::int8_t>(record[4 + i]);
     } else {
       codes.color[i] = ordered(word_at(record + std::size_t{4} * i), 32);
@@ -108,7 +108,7 @@ LightCodes LightForm::read(const std::byte* record) const {
   return codes;
 }
 
-void LightForm::write(const LightCodes& codes, std::byte* record) const {
+void LightEncoding::write(const LightCodes& codes, std::byte* record) const {
   if (alpha()) {
     const auto half = [](std::int32_t code) { return from_ordered(code, 16); };
     put_word(half(codes.color[0]) | half(codes.color[1]) << 16, record);
@@ -128,9 +128,9 @@ void LightForm::write(const LightCodes& codes, std::byte* record) const {
   if (shared_) put_word(first, record);
 }
 
-int LightForm::usual_top() const { return shared_ ? 16 : directed_ ? 127 : 15; }
+int LightEncoding::default_top() const { return shared_ ? 16 : directed_ ? 127 : 15; }
 
-int LightForm::top(const LightCodes& codes) const {
+int LightEncoding::top(const LightCodes& codes) const {
   if (shared_) {
     const bool dark = codes.color == std::array<std::int32_t, 3>{};
     return dark ? 0 : codes.exponent;
@@ -143,7 +143,7 @@ int LightForm::top(const LightCodes& codes) const {
   return top;
 }
 
-HemisphereLight LightForm::light(const LightCodes& codes, int top) const {
+HemisphereLight LightEncoding::light(const LightCodes& codes, int top) const {
   HemisphereLight out;
   for (unsigned i = 0; i < 3; ++i) {
     if (directed_) out.direction[i] = direction_of(codes.direction[i]);
@@ -152,53 +152,53 @@ HemisphereLight LightForm::light(const LightCodes& codes, int top) const {
   return out;
 }
 
-std::int64_t LightForm::direction_of(std::int32_t code) const {
+std::int64_t LightEncoding::direction_of(std::int32_t code) const {
   if (shared_) return code * kSnormUnit;
   const std::uint32_t bits = from_ordered(code, 32);
   const Parts parts = parts_of(bits, kFloatFraction);
   // 1 is 2^23 with the exponent 127.
   const std::int64_t length =
-      std::min(shifted(parts.mantissa, parts.exponent - 126), kMostDirection);
+      std::min(shifted(parts.mantissa, parts.exponent - 126), kMaxDirection);
   return (bits >> 31) != 0 ? -length : length;
 }
 
-std::int64_t LightForm::color_of(std::int32_t code, int exponent, int top) const {
+std::int64_t LightEncoding::color_of(std::int32_t code, int exponent, int top) const {
   if (shared_) return shifted(code, exponent - top + kSharedShift);
   if (code <= 0) return 0;
   const Parts parts = parts_of(static_cast<std::uint32_t>(code), fraction_);
   return shifted(parts.mantissa, parts.exponent - top + kColorShift - static_cast<int>(fraction_));
 }
 
-LightForm::Predicted LightForm::direction_code(std::int64_t coordinate) const {
+LightEncoding::Predicted LightEncoding::direction_code(std::int64_t coordinate) const {
   if (!shared_) {
     const std::uint32_t bits = to_bits(std::abs(coordinate), 126, kFloatFraction);
     return {ordered(coordinate < 0 ? bits | 0x80000000U : bits, 32), 0};
   }
-  constexpr std::int64_t kMost = 127;
-  const std::int64_t quarters = (coordinate * kMost + kUnitLength / 2) >> 22;
-  return {static_cast<std::int32_t>(std::clamp(quarters >> 2, -kMost, kMost)),
+  constexpr std::int64_t kMax = 127;
+  const std::int64_t quarters = (coordinate * kMax + kUnitLength / 2) >> 22;
+  return {static_cast<std::int32_t>(std::clamp(quarters >> 2, -kMax, kMax)),
           static_cast<std::uint32_t>(quarters & 3)};
 }
 
-std::int32_t LightForm::color_of_bits(std::int64_t code) const {
+std::int32_t LightEncoding::color_of_bits(std::int64_t code) const {
   const auto bits = static_cast<std::uint32_t>(code);
-  if (shared_) return static_cast<std::int32_t>(bits & static_cast<std::uint32_t>(kMostMantissa));
+  if (shared_) return static_cast<std::int32_t>(bits & static_cast<std::uint32_t>(kMaxMantissa));
   return static_cast<std::int32_t>(signed_of(bits, color_bits_));
 }
 
-std::int32_t LightForm::color_code(std::int64_t color, int exponent, int top) const {
+std::int32_t LightEncoding::color_code(std::int64_t color, int exponent, int top) const {
   if (!shared_) {
     const int shift = kColorShift - static_cast<int>(fraction_);
     return static_cast<std::int32_t>(to_bits(color, top - shift, fraction_));
   }
   const std::int64_t steps = in_steps(color, exponent - top + kSharedShift);
-  return static_cast<std::int32_t>(std::min<std::int64_t>(steps, kMostMantissa));
+  return static_cast<std::int32_t>(std::min<std::int64_t>(steps, kMaxMantissa));
 }
 
-int LightForm::exponent_of(std::int64_t brightest, int top) const {
-  constexpr int kMost = 31;
+int LightEncoding::exponent_of(std::int64_t brightest, int top) const {
+  constexpr int kMax = 31;
   int exponent = 0;
-  while (exponent < kMost && in_steps(brightest, exponent - top + kSharedShift) > kMostMantissa) {
+  while (exponent < kMax && in_steps(brightest, exponent - top + kSharedShift) > kMaxMantissa) {
     ++exponent;
   }
   return exponent;

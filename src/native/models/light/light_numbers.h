@@ -1,5 +1,5 @@
 // Arithmetic of the light model (docs/native.md, "Vertices", "Voxels"): directions and colours of
-// all forms as whole numbers.
+// all encodings as whole numbers.
 #pragma once
 
 #include "native/record_numbers.h"
@@ -13,11 +13,11 @@ namespace gicodec::native {
 
 inline constexpr std::size_t kHemispheres = 6;
 inline constexpr std::int64_t kUnitLength = 1 << 24;
-inline constexpr std::int64_t kMostDirection = 2 * kUnitLength;
-inline constexpr std::int64_t kMostColor = std::int64_t{1} << 41;
+inline constexpr std::int64_t kMaxDirection = 2 * kUnitLength;
+inline constexpr std::int64_t kMaxColor = std::int64_t{1} << 41;
 
 using Direction = std::array<std::int64_t, 3>;  ///< in units of 1 / kUnitLength
-using Color = std::array<std::int64_t, 3>;      ///< 0 to kMostColor, in units of the vertex
+using Color = std::array<std::int64_t, 3>;      ///< 0 to kMaxColor, in units of the vertex
 
 /// Light over one hemisphere.
 struct HemisphereLight {
@@ -37,10 +37,10 @@ struct LightCodes {
 
 /// Records of light: both of colored_direction(), E5B9G9R9_UFLOAT_PACK32 and
 /// R16G16B16A16_SFLOAT.
-class LightForm {
+class LightEncoding {
  public:
   /// Precondition: it is one of these.
-  explicit LightForm(const Record& record);
+  explicit LightEncoding(const Record& record);
   [[nodiscard]] bool shared() const { return shared_; }      ///< colours have one exponent
   [[nodiscard]] bool directed() const { return directed_; }  ///< with a direction
   [[nodiscard]] bool alpha() const { return !shared_ && !directed_; }
@@ -56,7 +56,7 @@ class LightForm {
   /// The exponent of the brightest colour; 0 without light.
   [[nodiscard]] int top(const LightCodes& codes) const;
   /// What to take for it where nothing has light.
-  [[nodiscard]] int usual_top() const;
+  [[nodiscard]] int default_top() const;
   /// With colours in units of a vertex whose top is that.
   [[nodiscard]] HemisphereLight light(const LightCodes& codes, int top) const;
   [[nodiscard]] std::int64_t direction_of(std::int32_t code) const;
@@ -96,10 +96,10 @@ class LightForm {
 
 /// value · 2^−shift to the nearest, at most 2^40.
 [[nodiscard]] inline std::int64_t in_steps(std::int64_t value, int shift) {
-  constexpr int kMostBits = 40;
+  constexpr int kMaxBits = 40;
   if (shift > 0) return shift > 62 ? 0 : (value + (std::int64_t{1} << (shift - 1))) >> shift;
   const int bits = static_cast<int>(width_of(value)) - shift;
-  return bits > kMostBits ? std::int64_t{1} << kMostBits : value << -shift;
+  return bits > kMaxBits ? std::int64_t{1} << kMaxBits : value << -shift;
 }
 
 }  // namespace gicodec::native

@@ -12,20 +12,20 @@ namespace gicodec::native {
 namespace {
 
 constexpr std::uint64_t kKey = (std::uint64_t{1} << 54) - 1;
-constexpr unsigned kMostAround = 3;  // voxels that count
-constexpr unsigned kMostSide = 8, kMostVoxels = kMostSide * kMostSide * kMostSide;
+constexpr unsigned kMaxAround = 3;  // voxels that count
+constexpr unsigned kMaxSide = 8, kMaxVoxels = kMaxSide * kMaxSide * kMaxSide;
 
-/// Coordinates of voxels within bricks of up to kMostSide, by Morton number; and the reverse.
+/// Coordinates of voxels within bricks of up to kMaxSide, by Morton number; and the reverse.
 struct Curve {
   struct Voxel {
     std::uint8_t x = 0, y = 0, z = 0;
   };
-  std::array<Voxel, kMostVoxels> voxel{};
-  std::array<std::uint16_t, kMostVoxels> number{};  ///< of x + 8·(y + 8·z)
+  std::array<Voxel, kMaxVoxels> voxel{};
+  std::array<std::uint16_t, kMaxVoxels> number{};  ///< of x + 8·(y + 8·z)
 };
 constexpr Curve kCurve = [] {
   Curve curve;
-  for (unsigned m = 0; m < kMostVoxels; ++m) {
+  for (unsigned m = 0; m < kMaxVoxels; ++m) {
     unsigned x = 0, y = 0, z = 0;
     for (unsigned bit = 0; bit < 3; ++bit) {
       x |= (m >> (3 * bit) & 1) << bit;
@@ -34,7 +34,7 @@ constexpr Curve kCurve = [] {
     }
     curve.voxel[m] = {static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(y),
                       static_cast<std::uint8_t>(z)};
-    curve.number[x + kMostSide * (y + kMostSide * z)] = static_cast<std::uint16_t>(m);
+    curve.number[x + kMaxSide * (y + kMaxSide * z)] = static_cast<std::uint16_t>(m);
   }
   return curve;
 }();
@@ -75,7 +75,7 @@ void find_held_bricks(const Update& u, Vector<PlacedBrick>& out) {
 
 void Bricks::reset(const Update& u, std::span<const std::uint32_t> positions) {
   side_ = u.desc.block.y;
-  form_ = LightForm(u.desc.record);
+  encoding_ = LightEncoding(u.desc.record);
   voxel_bytes_ = kVoxelDirections * std::size_t{u.desc.record.bytes};
   bricks_.clear();
   bricks_.reserve(positions.size());
@@ -95,8 +95,8 @@ Bricks::Brick Bricks::listed(const Update& u, const BlockTable& records,
   if (!u.update || u.mirror.presence.bytes == 0 || !u.mirror.is_received(block)) return brick;
   const auto before = u.mirror.presence[block];
   if (place_of(before.data()) != place_of(presence.data())) return brick;
-  brick.past = u.mirror.blocks[block].data();
-  brick.past_mask = before.data() + kBrickPlaceBytes;
+  brick.previous = u.mirror.blocks[block].data();
+  brick.previous_mask = before.data() + kBrickPlaceBytes;
   return brick;
 }
 
@@ -123,7 +123,7 @@ std::uint32_t Bricks::enter(const Update& u, const BlockTable& records, std::siz
   const auto level = static_cast<unsigned>(place_of(presence.data()) >> kBrickLevelShift);
   const std::array<std::uint32_t, 3> at = unpack_brick_place(presence).at;
   for (unsigned n = 0; n < kAround; ++n) {
-    // Beyond the last brick is far away: 0 − 1 is.
+    // 0 − 1 wraps, and is beyond the last brick too.
     const std::array<std::uint32_t, 3> there{at[0] + n % 3 - 1, at[1] + n / 3 % 3 - 1,
                                              at[2] + n / 9 - 1};
     const bool inside =
@@ -148,72 +148,74 @@ std::size_t Bricks::offset(unsigned m) const {
   return voxel_of(kCurve.voxel[m], side_) * voxel_bytes_;
 }
 
-std::span<const std::byte> Bricks::past(unsigned m) const {
+std::span<const std::byte> Bricks::previous(unsigned m) const {
   const Brick& here = around_[kHere];
   const unsigned voxel = voxel_of(kCurve.voxel[m], side_);
-  if (here.past == nullptr || !has(here.past_mask, voxel)) return {};
-  return {here.past + voxel * voxel_bytes_, voxel_bytes_};
+  if (here.previous == nullptr || !has(here.previous_mask, voxel)) return {};
+  return {here.previous + voxel * voxel_bytes_, voxel_bytes_};
 }
 
-KnownLights::Other Bricks::other(const Brick& brick, unsigned voxel, std::uint32_t distance) const {
-  KnownLights::Other other;
+KnownLights::Neighbour Bricks::other(const Brick& brick, unsigned voxel,
+                                     std::uint32_t distance) const {
+  KnownLights::Neighbour other;
   if (brick.now == nullptr || !has(brick.mask, voxel)) return other;
   const std::size_t at = voxel * voxel_bytes_;
   other.now = brick.now + at;
-  if (brick.past != nullptr && has(brick.past_mask, voxel)) other.past = brick.past + at;
+  if (brick.previous != nullptr && has(brick.previous_mask, voxel))
+    other.previous = brick.previous + at;
   other.distance = distance;
-  other.lit = form_.lit(other.now);
+  other.lit = encoding_.lit(other.now);
   other.dark = other.lit == 0 && is_zero({other.now, voxel_bytes_});
   return other;
 }
 
-KnownLights::Other Bricks::own(unsigned m, unsigned family, std::uint32_t distance) const {
-  KnownLights::Other one = other(around_[kHere], voxel_of(kCurve.voxel[m], side_), distance);
-  if (one.now == nullptr || m / KnownLights::kChildren != family) return one;
-  // Its light may be still to come.
-  const ToldLight& told = told_[m % KnownLights::kChildren];
-  one.lit = told.lit;
-  one.dark = !told.any;
+KnownLights::Neighbour Bricks::own(unsigned m, unsigned siblings, std::uint32_t distance) const {
+  KnownLights::Neighbour one = other(around_[kHere], voxel_of(kCurve.voxel[m], side_), distance);
+  if (one.now == nullptr || m / KnownLights::kChildren != siblings) return one;
+  // Its light may not be coded yet.
+  const LightOccupancy& occupancy = occupancy_[m % KnownLights::kChildren];
+  one.lit = occupancy.lit;
+  one.dark = !occupancy.any;
   return one;
 }
 
-KnownLights::Family Bricks::family(unsigned m) const {
-  KnownLights::Family family;
+KnownLights::Siblings Bricks::siblings(unsigned m) const {
+  KnownLights::Siblings siblings;
   const Curve::Voxel v = kCurve.voxel[m];
   const unsigned above = parent_at_[0] + v.x / 2 +
                          side_ * (parent_at_[1] + v.y / 2 + side_ * (parent_at_[2] + v.z / 2));
-  family.parent = other(parent_, above, 1);
+  siblings.parent = other(parent_, above, 1);
   const unsigned first = m - m % KnownLights::kChildren;
   for (unsigned child = first; child < first + KnownLights::kChildren; ++child) {
-    const KnownLights::Other one = own(child, m / KnownLights::kChildren, 1);
+    const KnownLights::Neighbour one = own(child, m / KnownLights::kChildren, 1);
     if (one.now == nullptr) continue;
-    family.lit[family.children++] = one.lit;
-    if (child < m) family.before[family.coded++] = one;
+    siblings.lit[siblings.children++] = one.lit;
+    if (child < m) siblings.before[siblings.coded++] = one;
   }
-  return family;
+  return siblings;
 }
 
-KnownLights Bricks::around(unsigned m, bool has_past) const {
+KnownLights Bricks::around(unsigned m, bool has_previous) const {
   KnownLights known;
   const Curve::Voxel v = kCurve.voxel[m];
   const auto side = static_cast<int>(side_);
   for (const NearbyOffset& o : kOffset) {
     const int x = v.x + o.x, y = v.y + o.y, z = v.z + o.z;
-    // 0 before, 1 in, 2 behind the brick.
+    // 0 before, 1 in, 2 after the brick.
     const auto part = [side](int c) { return c < 0 ? 0U : c < side ? 1U : 2U; };
     const unsigned n = part(x) + 3 * (part(y) + 3 * part(z));
     const auto within = [side](int c) { return static_cast<unsigned>((c + side) % side); };
     const unsigned lx = within(x), ly = within(y), lz = within(z);
-    const unsigned number = kCurve.number[lx + kMostSide * (ly + kMostSide * lz)];
+    const unsigned number = kCurve.number[lx + kMaxSide * (ly + kMaxSide * lz)];
     if (n == kHere && number >= m) continue;
-    const KnownLights::Other one =
+    const KnownLights::Neighbour one =
         n == kHere ? own(number, m / KnownLights::kChildren, o.distance)
                    : other(around_[n], lx + side_ * (ly + side_ * lz), o.distance);
-    if (one.now == nullptr || (has_past && one.past == nullptr)) continue;
+    if (one.now == nullptr || (has_previous && one.previous == nullptr)) continue;
     known.other[known.count] = one;
-    if (++known.count == kMostAround) break;
+    if (++known.count == kMaxAround) break;
   }
-  known.family = family(m);
+  known.siblings = siblings(m);
   return known;
 }
 

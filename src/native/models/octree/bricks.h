@@ -38,38 +38,41 @@ class Bricks {
   [[nodiscard]] bool exists(unsigned m) const;
   /// Where its records are in the block.
   [[nodiscard]] std::size_t offset(unsigned m) const;
-  /// Its light before this update; empty if there was none.
-  [[nodiscard]] std::span<const std::byte> past(unsigned m) const;
-  /// `has_past`: what has none is no help. Of the family only those before are told.
-  [[nodiscard]] KnownLights around(unsigned m, bool has_past) const;
-  /// What is told of a voxel of the family that is coded.
-  void tell(unsigned m, ToldLight light) { told_[m % KnownLights::kChildren] = light; }
-  [[nodiscard]] KnownLights::Family family(unsigned m) const;
+  /// Its light in the mirror; empty if there was none.
+  [[nodiscard]] std::span<const std::byte> previous(unsigned m) const;
+  /// With `has_previous` only voxels that have previous ones count.
+  [[nodiscard]] KnownLights around(unsigned m, bool has_previous) const;
+  /// The occupancy of a voxel among the siblings that are coded.
+  void set_occupancy(unsigned m, LightOccupancy light) {
+    occupancy_[m % KnownLights::kChildren] = light;
+  }
+  [[nodiscard]] KnownLights::Siblings siblings(unsigned m) const;
 
  private:
   static constexpr unsigned kAround = 27, kHere = 13;
   struct Brick {
     const std::byte *now = nullptr, *mask = nullptr;
-    const std::byte *past = nullptr, *past_mask = nullptr;  ///< at the same place
+    const std::byte *previous = nullptr, *previous_mask = nullptr;  ///< at the same place
   };
   [[nodiscard]] Brick listed(const Update& u, const BlockTable& records,
                              std::uint32_t position) const;
   /// One that is known before the i-th.
   [[nodiscard]] Brick find(const Update& u, const BlockTable& records, std::uint64_t order,
                            std::size_t i) const;
-  [[nodiscard]] KnownLights::Other other(const Brick& brick, unsigned voxel,
-                                         std::uint32_t distance) const;
-  /// One of the brick that is coded, at squared `distance` from one of `family`.
-  [[nodiscard]] KnownLights::Other own(unsigned m, unsigned family, std::uint32_t distance) const;
+  [[nodiscard]] KnownLights::Neighbour other(const Brick& brick, unsigned voxel,
+                                             std::uint32_t distance) const;
+  /// One of the brick that is coded, at squared `distance` from one of `siblings`.
+  [[nodiscard]] KnownLights::Neighbour own(unsigned m, unsigned siblings,
+                                           std::uint32_t distance) const;
 
   unsigned side_ = 0;
   std::size_t voxel_bytes_ = 0;
-  LightForm form_{Record{}};
+  LightEncoding encoding_{Record{}};
   Vector<PlacedBrick> bricks_;
   // Of the brick that is coded.
   std::array<Brick, kAround> around_{};
   Brick parent_{};
-  std::array<ToldLight, KnownLights::kChildren> told_{};
+  std::array<LightOccupancy, KnownLights::kChildren> occupancy_{};
   std::array<unsigned, 3> parent_at_{};  ///< the parent of its first voxel, in that brick
 };
 

@@ -7,17 +7,17 @@
 
 namespace gicodec::native {
 
-/// Brick by brick, family by family: where each voxel of a family has light, then the light of
-/// those that have.
+/// Brick by brick, in groups of eight siblings: the occupancy of each, then the light of those that
+/// have any.
 template <typename Coder>
 bool code_octree(const ChunkCoding<Coder>& chunk) {
-  constexpr unsigned kFamily = KnownLights::kChildren;
+  constexpr unsigned kSiblings = KnownLights::kChildren;
   struct Voxel {
-    std::span<const std::byte> past;
+    std::span<const std::byte> previous;
     KnownLights around;
-    ToldLight told;
+    LightOccupancy occupancy;
   };
-  std::array<Voxel, kFamily> family;
+  std::array<Voxel, kSiblings> siblings;
   const Record& record = chunk.update.desc.record;
   Bricks& bricks = chunk.memory.bricks;
   LightModel& model = chunk.memory.light;
@@ -34,22 +34,23 @@ bool code_octree(const ChunkCoding<Coder>& chunk) {
     const auto out = chunk.out(position);
     std::fill(out.begin(), out.end(), std::byte{0});
     if (!chunk.goes_on()) return false;
-    for (unsigned first = 0; first < bricks.voxels(); first += kFamily) {
-      for (unsigned m = first; m < first + kFamily; ++m) {
-        Voxel& one = family[m - first];
-        one.told = {};
+    for (unsigned first = 0; first < bricks.voxels(); first += kSiblings) {
+      for (unsigned m = first; m < first + kSiblings; ++m) {
+        Voxel& one = siblings[m - first];
+        one.occupancy = {};
         if (!bricks.exists(m)) continue;
-        one.past = bricks.past(m);
-        if (is_zero(one.past)) one.past = {};
-        one.around = bricks.around(m, !one.past.empty());
-        one.told = model.tell(chunk.coder, one.around, one.past, records_of(in, m));
-        bricks.tell(m, one.told);
+        one.previous = bricks.previous(m);
+        if (is_zero(one.previous)) one.previous = {};
+        one.around = bricks.around(m, !one.previous.empty());
+        one.occupancy =
+            model.code_occupancy(chunk.coder, one.around, one.previous, records_of(in, m));
+        bricks.set_occupancy(m, one.occupancy);
       }
-      for (unsigned m = first; m < first + kFamily; ++m) {
-        Voxel& one = family[m - first];
-        if (!one.told.any) continue;
-        one.around.family = bricks.family(m);
-        model.code(chunk.coder, one.told, one.around, one.past, records_of(in, m),
+      for (unsigned m = first; m < first + kSiblings; ++m) {
+        Voxel& one = siblings[m - first];
+        if (!one.occupancy.any) continue;
+        one.around.siblings = bricks.siblings(m);
+        model.code(chunk.coder, one.occupancy, one.around, one.previous, records_of(in, m),
                    records_of(out, m));
       }
     }

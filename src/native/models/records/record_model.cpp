@@ -16,20 +16,20 @@ enum Role : std::uint32_t {
   kChanged = 1,
   kChanged2 = 2,
   kChanged3 = 3,
-  kAlike = 7,
-  kAlike2 = 8,
-  kAlike3 = 9,
+  kComponents = 7,
+  kComponents2 = 8,
+  kComponents3 = 9,
   kSame = 32,
   kSame2 = 48,
   kSame3 = 64,
-  kHit = 80,
-  kHit2 = 96,
-  kHit3 = 112,
+  kMatch = 80,
+  kMatch2 = 96,
+  kMatch3 = 112,
   kNew = 128,
   kNewBefore = 144,
   kNewOthers = 160,
   kNewBoth = 176,
-  kNewAlike = 192,
+  kNewEqual = 192,
   kAround = 288,
   kOthers = 304,
   kBoth = 320,
@@ -39,18 +39,18 @@ enum Role : std::uint32_t {
   kSignOthers = 384,
 };
 // Mixers of flags, below those of signs.
-constexpr unsigned kChangedMixer = 0, kAlikeMixer = 2, kSameMixer = 16, kHitMixer = 32;
+constexpr unsigned kChangedMixer = 0, kComponentsMixer = 2, kSameMixer = 16, kMatchMixer = 32;
 constexpr unsigned kCandidates = 3, kTopBits = 8;
 /// Components in rows: small ones are coded by their differences, large ones may be copies.
 constexpr unsigned kSmall = 8, kLarge = 16;
 
 /// Of what a component is predicted.
-enum class Scale { past, codes, linear };
+enum class Scale { previous, codes, linear };
 Scale scale_of(const Component& component, bool mantissa) {
   if (mantissa) return Scale::linear;
   if (component.bits > 16 || component.kind == ComponentKind::opaque ||
       component.kind == ComponentKind::exponent) {
-    return Scale::past;
+    return Scale::previous;
   }
   return component.kind == ComponentKind::unorm || component.kind == ComponentKind::uint
              ? Scale::linear
@@ -65,7 +65,7 @@ bool all_zero(const std::array<std::uint32_t, kMaxComponents>& values) {
 
 void RecordModel::reset(const TextureDesc& desc, bool update, ValueModel& values) {
   values_ = &values;
-  constexpr unsigned kMostShift = 5;
+  constexpr unsigned kMaxShift = 5;
   values_->reset();
   desc_ = desc;
   update_ = update;
@@ -76,7 +76,7 @@ void RecordModel::reset(const TextureDesc& desc, bool update, ValueModel& values
   unsigned next = 0;
   for (unsigned c = 0; c < record.count; ++c) {
     const Component& component = record.components[c];
-    if (component.kind != ComponentKind::exponent || component.bits > kMostShift) continue;
+    if (component.kind != ComponentKind::exponent || component.bits > kMaxShift) continue;
     exponent_ = c;
     order_[next++] = static_cast<std::uint8_t>(c);
     break;
@@ -94,9 +94,9 @@ void RecordModel::reset(const TextureDesc& desc, bool update, ValueModel& values
   // Blocks of one row leave the other as it is.
   for (auto& row : rows_) row.fill({});
   last_ = last_but_one_ = {};
-  kin_.reset(desc_.record);
-  copies_ = 1;
-  moved_before_ = 0;
+  similar_.reset(desc_.record);
+  copy_history_ = 1;
+  changed_components_ = 0;
   error_ = {};
   noise_ = {};
   moved_ = {};
@@ -105,7 +105,7 @@ void RecordModel::reset(const TextureDesc& desc, bool update, ValueModel& values
 
 template <typename Coder>
 void RecordModel::code(Coder& coder, std::span<const std::byte> in, std::span<std::byte> out,
-                       std::span<const std::byte> past, std::span<const std::byte> presence) {
+                       std::span<const std::byte> previous, std::span<const std::byte> presence) {
   const Record& record = desc_.record;
   const std::size_t size = record.bytes;
   const std::uint32_t records = record_count(desc_.block);
@@ -115,7 +115,7 @@ void RecordModel::code(Coder& coder, std::span<const std::byte> in, std::span<st
   changes_ = 0;
   left_ = 0;
   for (std::uint32_t i = 0; i < records && update_ && one_row_; ++i) {
-    if (present.exists(i) && !is_zero(past.subspan(i * size, size))) ++left_;
+    if (present.exists(i) && !is_zero(previous.subspan(i * size, size))) ++left_;
   }
   row_ = 0;
   const std::size_t columns = desc_.block.x + std::size_t{2};
@@ -132,15 +132,15 @@ void RecordModel::code(Coder& coder, std::span<const std::byte> in, std::span<st
     here.exists = true;
     if (update_) {
       for (unsigned c = 0; c < record.count; ++c) {
-        here.past[c] = code_of(past.data() + i * size, record.components[c], size);
+        here.previous[c] = code_of(previous.data() + i * size, record.components[c], size);
       }
-      here.now = here.past;
-      here.known = !all_zero(here.past);
+      here.now = here.previous;
+      here.known = !all_zero(here.previous);
     }
-    const std::byte* const told = Coder::kDecodes ? nullptr : in.data() + i * size;
+    const std::byte* const source = Coder::kDecodes ? nullptr : in.data() + i * size;
     if constexpr (!Coder::kDecodes) {
       for (unsigned c = 0; c < record.count && !here.changed; ++c) {
-        here.changed = code_of(told, record.components[c], size) != here.past[c];
+        here.changed = code_of(source, record.components[c], size) != here.previous[c];
       }
     }
     if (here.known && one_row_) --left_;
@@ -150,14 +150,14 @@ void RecordModel::code(Coder& coder, std::span<const std::byte> in, std::span<st
     if (here.changed) {
       ++changes_;
       if (here.known) {
-        code_update(coder, here, column, told);
+        code_update(coder, here, column, source);
       } else {
-        code_new(coder, here, column, told);
+        code_new(coder, here, column, source);
       }
       last_but_one_ = last_;
       last_ = here;
     }
-    if (here.known && one_row_) kin_.put(here.past, here.changed, here.residual);
+    if (here.known && one_row_) similar_.put(here.previous, here.changed, here.residual);
     if constexpr (Coder::kDecodes) {
       for (unsigned c = 0; c < record.count; ++c) {
         set_code(out.data() + i * size, record.components[c], size, here.now[c]);
@@ -191,41 +191,41 @@ void RecordModel::code_new(Coder& coder, Seen& here, unsigned column, const std:
   const Values& other = !one_row_     ? n(column).now
                         : column >= 2 ? rows_[row_][column - 1].now
                                       : last_but_one_.now;
-  std::uint32_t others = 0, alike = 1;
+  std::uint32_t others = 0, equal_before = 1;
   for (unsigned c = record.count; c-- > 0;) {
     const Component& component = record.components[c];
     const unsigned bits = component.bits;
     const auto top = [bits](std::uint32_t value) { return top_bits(value, bits, kTopBits); };
     std::uint32_t value = 0;
     if constexpr (!Coder::kDecodes) value = code_of(in, component, record.bytes);
-    bool hit = false;
+    bool match = false;
     if (bits > 8) {
       const std::uint32_t ahead = (2 * last_.now[c] - last_but_one_.now[c]) & largest(bits);
       const std::array<std::uint32_t, kCandidates> candidate{last_.now[c], ahead, other[c]};
-      for (unsigned k = 0; k < kCandidates && !hit; ++k) {
+      for (unsigned k = 0; k < kCandidates && !match; ++k) {
         if (std::find(candidate.begin(), candidate.begin() + k, candidate[k]) !=
             candidate.begin() + k) {
           continue;
         }
-        hit = values_->flag(coder, kHitMixer + kCandidates * c + k,
-                            {{{hashed(kHit + c, k), alike & 7},
-                              {hashed(kHit2 + c, alike & 255), k},
-                              {hashed(kHit3 + c, history_ & 15), k}}},
-                            value == candidate[k]);
-        if (hit) value = candidate[k];
+        match = values_->flag(coder, kMatchMixer + kCandidates * c + k,
+                              {{{hashed(kMatch + c, k), equal_before & 7},
+                                {hashed(kMatch2 + c, equal_before & 255), k},
+                                {hashed(kMatch3 + c, history_ & 15), k}}},
+                              value == candidate[k]);
+        if (match) value = candidate[k];
       }
     }
-    if (!hit) {
+    if (!match) {
       const std::uint32_t at = first ? 1 : 0;
       value = values_->value(coder, c,
                              {hashed(kNew + c, at), hashed(kNewBefore + c, top(before[c]), at),
                               hashed(kNewOthers + c, others),
-                              hashed(kNewBoth + c, top(before[c]), top(other[c]), alike & 3),
-                              hashed(kNewAlike + c, top(before[c]), alike, at)},
+                              hashed(kNewBoth + c, top(before[c]), top(other[c]), equal_before & 3),
+                              hashed(kNewEqual + c, top(before[c]), equal_before, at)},
                              bits, value);
     }
     others = hashed(others, top(value));
-    alike = alike << 1 | (value == before[c] ? 1U : 0U);
+    equal_before = equal_before << 1 | (value == before[c] ? 1U : 0U);
     here.now[c] = value;
   }
 }
@@ -235,37 +235,38 @@ void RecordModel::code_update(Coder& coder, Seen& here, unsigned column, const s
   const Record& record = desc_.record;
   coded_ = 0;
   residual_ = residual_before_ = 0;
-  lead_guess_ = 0;
-  twin_ = 0;
-  std::uint32_t pattern = 1, told = 0, moved = 0;
+  lead_prediction_ = 0;
+  last_copied_ = 0;
+  std::uint32_t pattern = 1, actual = 0, moved = 0;
   for (unsigned c = 0; c < record.count && !Coder::kDecodes; ++c) {
-    if (code_of(in, record.components[c], record.bytes) != here.past[c]) told |= 1U << c;
+    if (code_of(in, record.components[c], record.bytes) != here.previous[c]) actual |= 1U << c;
   }
   // In rows, often the same components as in the record that changed before.
-  const bool alike = one_row_ && moved_before_ != 0 &&
-                     values_->flag(coder, kAlikeMixer,
-                                   {{{kAlike, 0},
-                                     {hashed(kAlike2, moved_before_), 0},
-                                     {hashed(kAlike3, history_ & 7), std::min(changes_, 3U)}}},
-                                   told == moved_before_);
+  const bool same_components =
+      one_row_ && changed_components_ != 0 &&
+      values_->flag(coder, kComponentsMixer,
+                    {{{kComponents, 0},
+                      {hashed(kComponents2, changed_components_), 0},
+                      {hashed(kComponents3, history_ & 7), std::min(changes_, 3U)}}},
+                    actual == changed_components_);
   for (unsigned place = 0; place < record.count; ++place) {
     const unsigned c = order_[place];
     const unsigned bits = record.components[c].bits;
     std::uint32_t value = 0;
     if constexpr (!Coder::kDecodes) value = code_of(in, record.components[c], record.bytes);
-    const bool same =
-        alike ? (moved_before_ >> c & 1) == 0 : code_same(coder, here, column, c, pattern, value);
+    const bool same = same_components ? (changed_components_ >> c & 1) == 0
+                                      : code_same(coder, here, column, c, pattern, value);
     pattern = pattern << 1 | (same ? 0U : 1U);
     if (same) continue;
     moved |= 1U << c;
     if (one_row_ && bits <= kSmall) {
       here.now[c] = code_difference(coder, c, here, column, value);
-      here.residual[c] = static_cast<std::int32_t>(signed_of(here.now[c] - here.past[c], bits));
+      here.residual[c] = static_cast<std::int32_t>(signed_of(here.now[c] - here.previous[c], bits));
     } else if (!one_row_ || bits <= kLarge || !code_copy(coder, place, here, value)) {
       here.now[c] = code_number(coder, place, here, column, value);
     }
   }
-  moved_before_ = moved;
+  changed_components_ = moved;
 }
 
 template <typename Coder>
@@ -277,21 +278,21 @@ bool RecordModel::code_same(Coder& coder, const Seen& here, unsigned column, uns
                        {{{hashed(kSame + c, pattern & 255), 0},
                          {hashed(kSame2 + c, history_ & 7), last_.residual[c] != 0 ? 1U : 0U},
                          {hashed(kSame3 + c, pattern & 255, around), std::min(changes_, 3U)}}},
-                       value == here.past[c]);
+                       value == here.previous[c]);
 }
 
-/// What a component may be now: as it was; by what the records around changed by; the same, by
-/// what the first component of the record did; by that one's change and what both usually do.
-std::array<std::uint64_t, RecordModel::kGuesses> RecordModel::guesses(unsigned c, const Seen& here,
-                                                                      unsigned column) const {
+/// Predictions of a component: its previous value; by the change of the records around; that and
+/// the error of the lead component's; by the lead component's change and the usual ratio of both.
+std::array<std::uint64_t, RecordModel::kPredictors> RecordModel::predictions(
+    unsigned c, const Seen& here, unsigned column) const {
   const Scale scale = scale_of(desc_.record.components[c], in_units(c));
-  const std::uint64_t past = scaled(c, here.past);
-  if (scale == Scale::past) return {past, past, past, past};
+  const std::uint64_t previous = scaled(c, here.previous);
+  if (scale == Scale::previous) return {previous, previous, previous, previous};
   std::uint64_t now = 0, before = 0, weights = 0;
   const auto add = [&](const Seen& seen, std::uint64_t weight) {
     if (!seen.known) return;
     now += weight * scaled(c, seen.now);
-    before += weight * scaled(c, seen.past);
+    before += weight * scaled(c, seen.previous);
     weights += weight;
   };
   add(w(column), 2);
@@ -300,29 +301,31 @@ std::array<std::uint64_t, RecordModel::kGuesses> RecordModel::guesses(unsigned c
   add(ne(column), 1);
   const auto moved = [](std::uint64_t from, std::int64_t by) {
     const std::int64_t to = static_cast<std::int64_t>(from) + by;
-    return std::clamp<std::uint64_t>(to < 0 ? 0 : static_cast<std::uint64_t>(to), 0, kMostGuess);
+    return std::clamp<std::uint64_t>(to < 0 ? 0 : static_cast<std::uint64_t>(to), 0,
+                                     kMaxPrediction);
   };
-  std::array<std::uint64_t, kGuesses> guess{past, past, past, past};
+  std::array<std::uint64_t, kPredictors> prediction{previous, previous, previous, previous};
   if (scale == Scale::linear) {
-    if (before + past != 0) guess[1] = in_proportion(past, now + past, before + past);
+    if (before + previous != 0)
+      prediction[1] = in_proportion(previous, now + previous, before + previous);
   } else {
     const auto change = static_cast<std::int64_t>(now) - static_cast<std::int64_t>(before);
-    guess[1] = moved(past, change / static_cast<std::int64_t>(weights + 1));
+    prediction[1] = moved(previous, change / static_cast<std::int64_t>(weights + 1));
   }
-  guess[2] = guess[1];
-  if (lead_guess_ == 0) return guess;
+  prediction[2] = prediction[1];
+  if (lead_prediction_ == 0) return prediction;
   if (scale == Scale::linear) {
-    guess[2] = in_proportion(guess[1], lead_now_, lead_guess_);
+    prediction[2] = in_proportion(prediction[1], lead_now_, lead_prediction_);
   } else {
-    guess[2] = moved(guess[1],
-                     static_cast<std::int64_t>(lead_now_) - static_cast<std::int64_t>(lead_guess_));
+    prediction[2] = moved(prediction[1], static_cast<std::int64_t>(lead_now_) -
+                                             static_cast<std::int64_t>(lead_prediction_));
   }
   if (moved_[lead_] != 0) {
     const auto size = static_cast<std::uint64_t>(std::abs(lead_change_));
     const auto by = static_cast<std::int64_t>(in_proportion(size, moved_[c], moved_[lead_]));
-    guess[3] = moved(past, lead_change_ < 0 ? -by : by);
+    prediction[3] = moved(previous, lead_change_ < 0 ? -by : by);
   }
-  return guess;
+  return prediction;
 }
 
 template <typename Coder>
@@ -332,11 +335,11 @@ std::uint32_t RecordModel::code_number(Coder& coder, unsigned place, Seen& here,
   const unsigned bits = desc_.record.components[c].bits;
   const std::uint32_t most = largest(bits);
   const unsigned unit = in_units(c) ? here.now[exponent_] : 0;
-  const std::array<std::uint64_t, kGuesses> guess = guesses(c, here, column);
-  std::array<std::uint32_t, kGuesses> code;
+  const std::array<std::uint64_t, kPredictors> prediction = predictions(c, here, column);
+  std::array<std::uint32_t, kPredictors> code;
   std::size_t best = 0;
-  for (std::size_t i = 0; i < kGuesses; ++i) {
-    const std::uint64_t rounded = (guess[i] + ((std::uint64_t{1} << unit) >> 1)) >> unit;
+  for (std::size_t i = 0; i < kPredictors; ++i) {
+    const std::uint64_t rounded = (prediction[i] + ((std::uint64_t{1} << unit) >> 1)) >> unit;
     code[i] = static_cast<std::uint32_t>(std::min<std::uint64_t>(rounded, most));
     if (error_[c][i] < error_[c][best]) best = i;
   }
@@ -355,7 +358,8 @@ std::uint32_t RecordModel::code_number(Coder& coder, unsigned place, Seen& here,
                        static_cast<std::uint32_t>(std::uint64_t{predicted} << 2 >> (width - 1) & 3);
   const int shift =
       in_units(c)
-          ? std::clamp(static_cast<int>(unit) - static_cast<int>(here.past[exponent_]), -3, 3) + 3
+          ? std::clamp(static_cast<int>(unit) - static_cast<int>(here.previous[exponent_]), -3, 3) +
+                3
           : 0;
   const auto shifted = static_cast<std::uint32_t>(shift);
   const std::uint32_t r1 = width_of(residual_), r2 = width_of(residual_before_);
@@ -363,7 +367,7 @@ std::uint32_t RecordModel::code_number(Coder& coder, unsigned place, Seen& here,
                          sign_of(last_.residual[c])};
   const FlagContext others{hashed(kSignOthers + c, shifted),
                            sign_of(residual_) * 3 + sign_of(residual_before_)};
-  const std::int64_t told = signed_of(value - predicted, bits);
+  const std::int64_t actual = signed_of(value - predicted, bits);
   const std::int64_t residual = values_->number(
       coder, c,
       {hashed(kAround + c, half_octave(energy), known), hashed(kOthers + c, r1, r2, coded_),
@@ -371,26 +375,27 @@ std::uint32_t RecordModel::code_number(Coder& coder, unsigned place, Seen& here,
        hashed(kSize + c, scale, shifted),
        hashed(kNoise + c, half_octave(static_cast<std::uint64_t>(noise_[c])),
               width_of(last_.residual[c]))},
-      {{sign, others, {hashed(sign.hash, others.hash, sign.index), others.index}}}, told);
+      {{sign, others, {hashed(sign.hash, others.hash, sign.index), others.index}}}, actual);
   value = (predicted + static_cast<std::uint32_t>(residual)) & most;
 
-  for (std::size_t i = 0; i < kGuesses; ++i) {
-    const std::int64_t off = std::abs(std::int64_t{code[i]} - std::int64_t{value});
-    const auto error = static_cast<std::int32_t>(std::min<std::int64_t>(off, 4095)) * 64;
+  for (std::size_t i = 0; i < kPredictors; ++i) {
+    const std::int64_t distance = std::abs(std::int64_t{code[i]} - std::int64_t{value});
+    const auto error = static_cast<std::int32_t>(std::min<std::int64_t>(distance, 4095)) * 64;
     error_[c][i] += (error - error_[c][i]) >> 4;
   }
-  const auto loud = static_cast<std::int32_t>(
+  const auto magnitude = static_cast<std::int32_t>(
       std::min<std::int64_t>(std::abs(residual), std::int64_t{1} << 20) * 16);
-  noise_[c] += (loud - noise_[c]) >> 4;
+  noise_[c] += (magnitude - noise_[c]) >> 4;
   here.residual[c] = static_cast<std::int32_t>(signed_of(value - predicted, bits));
   here.now[c] = value;
   const auto change = static_cast<std::int64_t>(scaled(c, here.now)) -
-                      static_cast<std::int64_t>(scaled(c, here.past));
+                      static_cast<std::int64_t>(scaled(c, here.previous));
   moved_[c] += static_cast<std::uint64_t>(std::abs(change)) - (moved_[c] >> 4);
-  if (lead_guess_ == 0 && scale_of(desc_.record.components[c], in_units(c)) != Scale::past) {
+  if (lead_prediction_ == 0 &&
+      scale_of(desc_.record.components[c], in_units(c)) != Scale::previous) {
     lead_ = c;
     lead_now_ = scaled(c, here.now);
-    lead_guess_ = std::max<std::uint64_t>(guess[1], 1);
+    lead_prediction_ = std::max<std::uint64_t>(prediction[1], 1);
     lead_change_ = change;
   }
   ++coded_;

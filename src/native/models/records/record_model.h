@@ -2,7 +2,7 @@
 // much, what is new by what stands before it.
 #pragma once
 
-#include "native/models/records/kin.h"
+#include "native/models/records/similar_records.h"
 #include "native/value_model.h"
 
 #include <gicodec/texture.h>
@@ -16,22 +16,22 @@ class RecordModel {
  public:
   /// Before the first block of a chunk; `values` must outlive its last.
   void reset(const TextureDesc& desc, bool update, ValueModel& values);
-  /// One block, in order, from `in` or into `out`. `past`: its mirror block, not read in keyframes.
-  /// `presence` as in jobs.
+  /// One block, in order, from `in` or into `out`. `previous`: its mirror block, not read in
+  /// keyframes. `presence` as in jobs.
   template <typename Coder>
   void code(Coder& coder, std::span<const std::byte> in, std::span<std::byte> out,
-            std::span<const std::byte> past, std::span<const std::byte> presence);
+            std::span<const std::byte> previous, std::span<const std::byte> presence);
 
  private:
   using Values = std::array<std::uint32_t, kMaxComponents>;
   /// A record of the block, or none.
   struct Seen {
     bool exists = false, changed = false;
-    bool known = false;  ///< by `past`
-    Values now{}, past{};
+    bool known = false;  ///< by `previous`
+    Values now{}, previous{};
     std::array<std::int32_t, kMaxComponents> residual{};  ///< of what was predicted
   };
-  static constexpr unsigned kGuesses = 4;
+  static constexpr unsigned kPredictors = 4;
 
   template <typename Coder>
   bool code_changed(Coder& coder, const Seen& here, unsigned column, std::uint32_t index,
@@ -67,21 +67,23 @@ class RecordModel {
     return std::uint64_t{values[c]} << (in_units(c) ? values[exponent_] : 0);
   }
   [[nodiscard]] bool in_units(unsigned c) const { return (mantissas_ >> c & 1) != 0; }
-  std::array<std::uint64_t, kGuesses> guesses(unsigned c, const Seen& here, unsigned column) const;
+  std::array<std::uint64_t, kPredictors> predictions(unsigned c, const Seen& here,
+                                                     unsigned column) const;
 
   ValueModel* values_ = nullptr;
   TextureDesc desc_;
   bool update_ = false, one_row_ = false;
   std::uint32_t mantissas_ = 0;  ///< components in units of an exponent, by bit
   unsigned exponent_ = 0;
-  std::array<std::uint8_t, kMaxComponents> order_{};  ///< of components that are known by `past`
+  std::array<std::uint8_t, kMaxComponents> order_{};  ///< of components of known records
 
   // Of the chunk so far.
   Seen last_, last_but_one_;        ///< records that were coded
-  KinTable kin_;                    ///< in rows
-  std::uint32_t copies_ = 1;        ///< which candidates were right, by bit
-  std::uint32_t moved_before_ = 0;  ///< components of the last known record that changed, by bit
-  std::array<std::array<std::int32_t, kGuesses>, kMaxComponents> error_{};
+  SimilarRecords similar_;          ///< in rows
+  std::uint32_t copy_history_ = 1;  ///< which candidates were right, by bit
+  std::uint32_t changed_components_ =
+      0;  ///< components of the last known record that changed, by bit
+  std::array<std::array<std::int32_t, kPredictors>, kMaxComponents> error_{};
   std::array<std::int32_t, kMaxComponents> noise_{};
   std::array<std::uint64_t, kMaxComponents> moved_{};  ///< sums of what components changed by
   std::uint32_t changes_before_ = 0;                   ///< of the block before, up to 7
@@ -93,10 +95,11 @@ class RecordModel {
   std::uint32_t left_ = 0;  ///< known records behind this one, in rows
 
   // Of the record.
-  std::uint32_t twin_ = 0;  ///< whether it copies the record that changed last: 2 no, 0 not told
-  unsigned coded_ = 0;      ///< components with residuals so far
+  std::uint32_t last_copied_ =
+      0;  ///< whether a component copies the record that changed last: 2 no, 1 yes, 0 not coded
+  unsigned coded_ = 0;  ///< components with residuals so far
   std::int64_t residual_ = 0, residual_before_ = 0;
-  std::uint64_t lead_now_ = 0, lead_guess_ = 0;  ///< of the first component by numbers
+  std::uint64_t lead_now_ = 0, lead_prediction_ = 0;  ///< of the first component by numbers
   std::int64_t lead_change_ = 0;
   unsigned lead_ = 0;
 };

@@ -8,7 +8,7 @@ bool code_records(const ChunkCoding<Coder>& chunk) {
   RecordModel& model = chunk.memory.record;
   model.reset(chunk.update.desc, chunk.update.update, chunk.memory.values);
   for (const std::uint32_t position : chunk.positions) {
-    model.code(chunk.coder, chunk.in(position), chunk.out(position), chunk.past(position),
+    model.code(chunk.coder, chunk.in(position), chunk.out(position), chunk.previous(position),
                chunk.presence(position));
     if (!chunk.goes_on()) return false;
   }

@@ -15,21 +15,21 @@ enum Role : std::uint32_t {
   kShared = 10,  // + axis, and the next ones likewise
   kShared2 = 13,
   kShared3 = 16,
-  kHit = 20,
-  kHitLeaf = 23,
-  kHit2 = 26,
-  kHit2Leaf = 29,
-  kHit3 = 32,
-  kHit3Leaf = 35,
+  kRecent = 20,
+  kRecentLeaf = 23,
+  kRecent2 = 26,
+  kRecent2Leaf = 29,
+  kRecent3 = 32,
+  kRecent3Leaf = 35,
   kLeft = 40,
   kLeft2 = 41,
   kLeft3 = 42,
   kBit = 50,
   kBit2 = 53,
   kBit3 = 56,
-  kSame = 100,  // + component
-  kSame2 = 116,
-  kSame3 = 132,
+  kEqual = 100,  // + component
+  kEqual2 = 116,
+  kEqual3 = 132,
   kValue = 150,
   kAfterOthers = 166,
   kNearBefore = 182,
@@ -37,11 +37,11 @@ enum Role : std::uint32_t {
   kInCell = 214,
 };
 // Mixers of flags.
-constexpr unsigned kOrderedMixer = 0, kZerosMixer = 1, kSharedMixer = 16, kHitMixer = 64,
-                   kBitMixer = 128, kSameMixer = 160;
+constexpr unsigned kOrderedMixer = 0, kZerosMixer = 1, kSharedMixer = 16, kRecentMixer = 64,
+                   kBitMixer = 128, kEqualMixer = 160;
 
-constexpr unsigned kMostRanks = 4, kFirstBits = 3, kCountDigits = 6;
-/// So much of a component tells about others: of the same record, of the next one.
+constexpr unsigned kMaxRanks = 4, kFirstBits = 3, kCountDigits = 6;
+/// Bits of a component that are contexts of others: of the same record, of the next one.
 constexpr unsigned kOtherBits = 12, kFewBits = 4, kBeforeBits = 9;
 /// Components of more bits have a flag for what the record before had: others cost less without.
 constexpr unsigned kNarrow = 16;
@@ -59,7 +59,7 @@ void SetModel::Recent::use(std::uint32_t coordinate) {
   unsigned at = 0;
   while (at < count && value[at] != coordinate) ++at;
   if (at == count) {
-    if (count < kMost) ++count;
+    if (count < kMax) ++count;
     at = count - 1;
   }
   for (; at > 0; --at) value[at] = value[at - 1];
@@ -113,7 +113,7 @@ bool SetModel::code(Coder& coder, const SetPlace& place, std::uint32_t count) {
     return true;
   }
   if (values_->flag(coder, kZerosMixer, kZeros, zeros > 0)) {
-    zeros = coder.plain(16, zeros);
+    zeros = coder.bypass(16, zeros);
     if (zeros == 0 || zeros > count) return false;
   } else {
     zeros = 0;
@@ -123,7 +123,7 @@ bool SetModel::code(Coder& coder, const SetPlace& place, std::uint32_t count) {
 
 template <typename Coder>
 bool SetModel::code_ordered(Coder& coder, const SetPlace& place, std::uint32_t count) {
-  // Every node that waits has a bit more that is known than the one before.
+  // Every node on the stack has one more known bit than the one before.
   std::array<Node, 32 * SetPlace::kMaxAxes + 2> waiting;
   unsigned depth = 0;
   if (count > 0) waiting[depth++] = {0, count, {}, {}, 0, 0, 0};
@@ -198,21 +198,21 @@ bool SetModel::code_shared(Coder& coder, const Node& node, unsigned axis) {
 /// if it is a coordinate of before.
 template <typename Coder>
 bool SetModel::code_rest(Coder& coder, const SetPlace& place, Node& node, unsigned axis) {
-  const std::uint32_t told = node.place[axis];
+  const std::uint32_t actual = node.place[axis];
   const unsigned known = node.known[axis], bits = place.bits(axis);
   const bool leaf = node.count == 1;
-  std::uint32_t low = told & mask(known);
+  std::uint32_t low = actual & mask(known);
   unsigned rank = 0;
-  for (unsigned i = 0; i < recent_[axis].count && rank < kMostRanks; ++i) {
+  for (unsigned i = 0; i < recent_[axis].count && rank < kMaxRanks; ++i) {
     const std::uint32_t candidate = recent_[axis].value[i];
     if (((candidate ^ low) & mask(known)) != 0) continue;
-    const bool hit =
-        values_->flag(coder, kHitMixer + (leaf ? 16 : 0) + rank * 4 + axis,
-                      {{{hashed((leaf ? kHitLeaf : kHit) + axis, 0U), rank},
-                        {hashed((leaf ? kHit2Leaf : kHit2) + axis, bits - known), rank},
-                        {hashed((leaf ? kHit3Leaf : kHit3) + axis, i, node.shared), rank}}},
-                      candidate == told);
-    if (hit) {
+    const bool recent =
+        values_->flag(coder, kRecentMixer + (leaf ? 16 : 0) + rank * 4 + axis,
+                      {{{hashed((leaf ? kRecentLeaf : kRecent) + axis, 0U), rank},
+                        {hashed((leaf ? kRecent2Leaf : kRecent2) + axis, bits - known), rank},
+                        {hashed((leaf ? kRecent3Leaf : kRecent3) + axis, i, node.shared), rank}}},
+                      candidate == actual);
+    if (recent) {
       node.place[axis] = candidate;
       recent_[axis].use(candidate);
       return true;
@@ -229,13 +229,13 @@ bool SetModel::code_rest(Coder& coder, const SetPlace& place, Node& node, unsign
                                      {{{hashed(kBit + axis, b, node.shared), s0 * 4 + s1},
                                        {hashed(kBit2 + axis, b, s0), s1 * 4 + s2},
                                        {hashed(kBit3 + axis, b, at), s0}}},
-                                     (told >> bit & 1) != 0);
+                                     (actual >> bit & 1) != 0);
       if (one) low |= 1U << bit;
     }
   }
   if (at < bits) {
     const unsigned shift = 32 - bits;
-    low |= coder.plain(bits - at, (told & ~mask(at)) >> shift) << shift;
+    low |= coder.bypass(bits - at, (actual & ~mask(at)) >> shift) << shift;
   }
   node.place[axis] = low;
   return false;
@@ -269,7 +269,7 @@ std::uint32_t SetModel::code_left(Coder& coder, const Node& node, unsigned axis)
     digits = digits << 1 | (one ? 1U : 0U);
   }
   const std::uint32_t high = digits ^ 1U << (width - low);
-  return low == 0 ? high : high << low | coder.plain(low, left & ((1U << low) - 1));
+  return low == 0 ? high : high << low | coder.bypass(low, left & ((1U << low) - 1));
 }
 
 template <typename Coder>
@@ -312,10 +312,10 @@ void SetModel::code_values(Coder& coder, std::uint32_t index, unsigned first, st
     if constexpr (!Coder::kDecodes) value = code_of(in_ + at, component, size);
     const std::uint32_t before = before_[c];
     const bool steady = before == before_that_[c];
-    if (bits > kNarrow && values_->flag(coder, kSameMixer + c,
-                                        {{{kSame + c, steady ? 1U : 0U},
-                                          {hashed(kSame2 + c, few), 0},
-                                          {hashed(kSame3 + c, plane), 0}}},
+    if (bits > kNarrow && values_->flag(coder, kEqualMixer + c,
+                                        {{{kEqual + c, steady ? 1U : 0U},
+                                          {hashed(kEqual2 + c, few), 0},
+                                          {hashed(kEqual3 + c, plane), 0}}},
                                         value == before)) {
       value = before;
     } else {

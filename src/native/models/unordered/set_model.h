@@ -1,5 +1,5 @@
-// Blocks that are sets (docs/native.md, "Sets"): places by bisection, which tells how many records
-// are on the lower side, other components by what records around have.
+// Blocks that are sets (docs/native.md, "Sets"): places by bisection, which codes how many records
+// are on the lower side, other components by those of records around.
 #pragma once
 
 #include "native/value_model.h"
@@ -39,8 +39,8 @@ class SetModel {
   };
   /// Coordinates that many records had, the last one first.
   struct Recent {
-    static constexpr unsigned kMost = 12;
-    std::array<std::uint32_t, kMost> value{};
+    static constexpr unsigned kMax = 12;
+    std::array<std::uint32_t, kMax> value{};
     unsigned count = 0;
     void use(std::uint32_t coordinate);
   };

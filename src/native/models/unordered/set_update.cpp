@@ -11,25 +11,25 @@ namespace {
 // What a context is for, the first number of its hash; those of components are added. Others than
 // the set model's.
 enum Role : std::uint32_t {
-  kSame = 3,
+  kEqual = 3,
   kPairs = 4,
   kKept = 5,
   kChanged = 60,
-  kStill = 230,  // + component, and the next ones likewise
-  kStill2 = 246,
-  kStill3 = 262,
+  kUnchanged = 230,  // + component, and the next ones likewise
+  kUnchanged2 = 246,
+  kUnchanged3 = 262,
   kDifference = 278,
   kAfterDifference = 294,
-  kFromPast = 310,
+  kFromPrevious = 310,
   kFromBoth = 326,
   kAfterChanges = 342,
 };
 // Mixers of flags.
-constexpr unsigned kSameMixer = 2, kPairsMixer = 3, kKeptMixer = 4, kChangedMixer = 8,
-                   kStillMixer = 176;
+constexpr unsigned kEqualMixer = 2, kPairsMixer = 3, kKeptMixer = 4, kChangedMixer = 8,
+                   kUnchangedMixer = 176;
 
-/// One in so many of the past's records must be there still to be worth a flag for each of them.
-constexpr std::size_t kLeastPairs = 16;
+/// One in so many of the previous records must be retained to be worth a flag for each of them.
+constexpr std::size_t kMinPaired = 16;
 
 /// How many records there are before the first one that is zero.
 std::uint32_t leading(std::span<const std::byte> records, std::size_t size) {
@@ -47,52 +47,52 @@ void SetUpdate::reset(ValueModel& values) {
   differences_ = {};
 }
 
-void SetUpdate::encode(BinaryEncoder& coder, const Record& record, std::span<const std::byte> past,
-                       std::span<const std::byte> records) {
-  if (!past.empty() && !records.empty()) {
-    const bool same = std::memcmp(records.data(), past.data(), records.size()) == 0;
-    if (values_->flag(coder, kSameMixer, kSame, same)) return;
-    if (values_->flag(coder, kPairsMixer, kPairs, pair(record, past, records))) {
-      code_fates(coder, static_cast<std::uint32_t>(records.size() / record.bytes));
+void SetUpdate::encode(BinaryEncoder& coder, const Record& record,
+                       std::span<const std::byte> previous, std::span<const std::byte> records) {
+  if (!previous.empty() && !records.empty()) {
+    const bool same = std::memcmp(records.data(), previous.data(), records.size()) == 0;
+    if (values_->flag(coder, kEqualMixer, kEqual, same)) return;
+    if (values_->flag(coder, kPairsMixer, kPairs, pair(record, previous, records))) {
+      code_states(coder, static_cast<std::uint32_t>(records.size() / record.bytes));
       set_.encode(coder, record, new_);
-      code_survivors(coder, record, past, records);
+      code_retained(coder, record, previous, records);
       return;
     }
   }
   set_.encode(coder, record, records);
 }
 
-bool SetUpdate::decode(BinaryDecoder& coder, const Record& record, std::span<const std::byte> past,
-                       std::span<std::byte> records) {
-  if (!past.empty() && !records.empty()) {
-    if (values_->flag(coder, kSameMixer, kSame, false)) {
-      std::memcpy(records.data(), past.data(), records.size());
+bool SetUpdate::decode(BinaryDecoder& coder, const Record& record,
+                       std::span<const std::byte> previous, std::span<std::byte> records) {
+  if (!previous.empty() && !records.empty()) {
+    if (values_->flag(coder, kEqualMixer, kEqual, false)) {
+      std::memcpy(records.data(), previous.data(), records.size());
       return true;
     }
     if (values_->flag(coder, kPairsMixer, kPairs, false)) {
-      fates_.resize(leading(past, record.bytes));
-      return code_fates(coder, static_cast<std::uint32_t>(records.size() / record.bytes)) &&
-             set_.decode(coder, record, records.subspan(std::size_t{survivors_} * record.bytes)) &&
-             code_survivors(coder, record, past, records);
+      states_.resize(leading(previous, record.bytes));
+      return code_states(coder, static_cast<std::uint32_t>(records.size() / record.bytes)) &&
+             set_.decode(coder, record, records.subspan(std::size_t{retained_} * record.bytes)) &&
+             code_retained(coder, record, previous, records);
     }
   }
   return set_.decode(coder, record, records);
 }
 
-/// Finds what became of the past's records, and which are new. False if the decoder would not put
-/// them into this order, or hardly one has survived.
-bool SetUpdate::pair(const Record& record, std::span<const std::byte> past,
+/// Finds the states of the previous records, and the new ones. False if the decoder would not put
+/// them into this order, or few are retained.
+bool SetUpdate::pair(const Record& record, std::span<const std::byte> previous,
                      std::span<const std::byte> records) {
   const std::size_t size = record.bytes;
   const SetPlace place_of(record);
-  const std::uint32_t before = leading(past, size), count = leading(records, size);
+  const std::uint32_t before = leading(previous, size), count = leading(records, size);
   if (!is_zero(records.subspan(count * size))) return false;
-  fates_.resize(before);
-  now_.clear();
+  states_.resize(before);
+  retained_at_.clear();
   new_.clear();
   std::uint32_t next = 0;
   SetPlace::Axes next_place{}, last_place{};
-  const auto look = [&] {
+  const auto advance = [&] {
     const SetPlace::Axes last = next_place;
     if (next < count) next_place = place_of(records.data() + next * size);
     return !SetPlace::before(next_place, last);
@@ -100,45 +100,45 @@ bool SetUpdate::pair(const Record& record, std::span<const std::byte> past,
   const auto add_new = [&] {
     const std::byte* const at = records.data() + next++ * size;
     new_.insert(new_.end(), at, at + size);
-    return look();
+    return advance();
   };
-  if (!look()) return false;
+  if (!advance()) return false;
   for (std::uint32_t i = 0; i < before; ++i) {
-    const std::byte* const was = past.data() + i * size;
+    const std::byte* const was = previous.data() + i * size;
     const SetPlace::Axes place = place_of(was);
     if (SetPlace::before(place, last_place)) return false;
     last_place = place;
     while (next < count && SetPlace::before(next_place, place)) {
       if (!add_new()) return false;
     }
-    fates_[i] = gone;
+    states_[i] = removed;
     if (next == count || next_place != place) continue;
-    fates_[i] = std::memcmp(records.data() + next * size, was, size) == 0 ? kept : changed;
-    now_.push_back(next++);
-    if (!look()) return false;
+    states_[i] = std::memcmp(records.data() + next * size, was, size) == 0 ? kept : changed;
+    retained_at_.push_back(next++);
+    if (!advance()) return false;
   }
   while (next * size < records.size()) {
     if (!add_new()) return false;
   }
-  return !now_.empty() && now_.size() * kLeastPairs >= before;
+  return !retained_at_.empty() && retained_at_.size() * kMinPaired >= before;
 }
 
-/// At most `most` records are not gone. False for what no encoder writes.
+/// At most `most` records are retained. False for what no encoder writes.
 template <typename Coder>
-bool SetUpdate::code_fates(Coder& coder, std::uint32_t most) {
-  survivors_ = 0;
-  for (Fate& fate : fates_) {
+bool SetUpdate::code_states(Coder& coder, std::uint32_t most) {
+  retained_ = 0;
+  for (RecordState& state : states_) {
     if constexpr (Coder::kDecodes) {
       if (coder.overrun()) return false;
     }
-    fate = survivors_ < most ? code_fate(coder, fate) : gone;
-    if (fate != gone) ++survivors_;
+    state = retained_ < most ? code_state(coder, state) : removed;
+    if (state != removed) ++retained_;
   }
   return true;
 }
 
 template <typename Coder>
-SetUpdate::Fate SetUpdate::code_fate(Coder& coder, Fate fate) {
+SetUpdate::RecordState SetUpdate::code_state(Coder& coder, RecordState state) {
   const std::uint32_t last = history_ & 3;
   const auto flag = [&](unsigned mixer, std::uint32_t role, bool value) {
     return values_->flag(coder, mixer + last,
@@ -147,28 +147,28 @@ SetUpdate::Fate SetUpdate::code_fate(Coder& coder, Fate fate) {
                            {hashed(role + 2, history_ & 0xFFF), 0}}},
                          value);
   };
-  if (flag(kKeptMixer, kKept, fate == kept)) {
-    fate = kept;
+  if (flag(kKeptMixer, kKept, state == kept)) {
+    state = kept;
   } else {
-    fate = flag(kChangedMixer, kChanged, fate == changed) ? changed : gone;
+    state = flag(kChangedMixer, kChanged, state == changed) ? changed : removed;
   }
-  history_ = history_ << 2 | fate;
-  return fate;
+  history_ = history_ << 2 | state;
+  return state;
 }
 
 template <typename Coder, typename Byte>
-bool SetUpdate::code_survivors(Coder& coder, const Record& record, std::span<const std::byte> past,
-                               std::span<Byte> records) {
+bool SetUpdate::code_retained(Coder& coder, const Record& record,
+                              std::span<const std::byte> previous, std::span<Byte> records) {
   const std::size_t size = record.bytes;
   const SetPlace place_of(record);
-  // New records are moved towards the front, and never onto one that is still to be moved: of the
-  // room before them as much is left as there are survivors to come.
+  // New records move towards the front, and never onto one that has not moved yet: the gap before
+  // them has room for the retained records to come.
   Byte* out = records.data();
-  [[maybe_unused]] const Byte* next = out + survivors_ * size;
-  std::uint32_t survivor = 0;
-  for (std::size_t i = 0; i < fates_.size(); ++i) {
-    if (fates_[i] == gone) continue;
-    const std::byte* const was = past.data() + i * size;
+  [[maybe_unused]] const Byte* next = out + retained_ * size;
+  std::uint32_t retained = 0;
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    if (states_[i] == removed) continue;
+    const std::byte* const was = previous.data() + i * size;
     if constexpr (Coder::kDecodes) {
       if (coder.overrun()) return false;
       const SetPlace::Axes place = place_of(was);
@@ -180,37 +180,38 @@ bool SetUpdate::code_survivors(Coder& coder, const Record& record, std::span<con
       }
       std::memcpy(out, was, size);
     } else {
-      out = records.data() + now_[survivor] * size;
+      out = records.data() + retained_at_[retained] * size;
     }
-    if (fates_[i] == changed) code_changed(coder, record, was, out);
+    if (states_[i] == changed) code_changed(coder, record, was, out);
     out += size;
-    ++survivor;
+    ++retained;
   }
   return true;
 }
 
-/// Components behind the axes, by their differences to the past.
+/// Components after the axes, by their differences to the previous values.
 template <typename Coder, typename Byte>
-void SetUpdate::code_changed(Coder& coder, const Record& record, const std::byte* past, Byte* now) {
+void SetUpdate::code_changed(Coder& coder, const Record& record, const std::byte* previous,
+                             Byte* now) {
   const std::size_t size = record.bytes;
   std::uint32_t changes = 1;
   for (unsigned c = SetPlace(record).axes(); c < record.count; ++c) {
     const Component& component = record.components[c];
     const unsigned bits = component.bits;
-    const std::uint32_t was = code_of(past, component, size);
+    const std::uint32_t was = code_of(previous, component, size);
     std::uint32_t difference = 0;
     if constexpr (!Coder::kDecodes) difference = folded(code_of(now, component, size) - was, bits);
     const std::uint32_t last = differences_[c];
-    const bool still = values_->flag(coder, kStillMixer + c,
-                                     {{{kStill + c, 0},
-                                       {hashed(kStill2 + c, changes & 0xFF), 0},
-                                       {hashed(kStill3 + c, last), 0}}},
-                                     difference == 0);
-    changes = changes << 1 | (still ? 0U : 1U);
-    if (still) continue;
+    const bool unchanged = values_->flag(coder, kUnchangedMixer + c,
+                                         {{{kUnchanged + c, 0},
+                                           {hashed(kUnchanged2 + c, changes & 0xFF), 0},
+                                           {hashed(kUnchanged3 + c, last), 0}}},
+                                         difference == 0);
+    changes = changes << 1 | (unchanged ? 0U : 1U);
+    if (unchanged) continue;
     difference = values_->value(coder, kMaxComponents + c,
                                 {hashed(kDifference + c, 0U), hashed(kAfterDifference + c, last),
-                                 hashed(kFromPast + c, was), hashed(kFromBoth + c, was, last),
+                                 hashed(kFromPrevious + c, was), hashed(kFromBoth + c, was, last),
                                  hashed(kAfterChanges + c, changes)},
                                 bits, difference);
     differences_[c] = difference;

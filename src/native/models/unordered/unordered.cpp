@@ -11,15 +11,15 @@ bool code_unordered(const ChunkCoding<Coder>& chunk) {
   SetUpdate& model = chunk.memory.set;
   model.reset(chunk.memory.values);
   for (const std::uint32_t position : chunk.positions) {
-    const auto past = chunk.past(position);
+    const auto previous = chunk.previous(position);
     const std::size_t present =
         BlockPresence(desc, chunk.presence(position)).count() * std::size_t{desc.record.bytes};
     if constexpr (Coder::kDecodes) {
       const auto block = chunk.out(position);
       std::fill(block.begin() + static_cast<std::ptrdiff_t>(present), block.end(), std::byte{0});
-      if (!model.decode(chunk.coder, desc.record, past, block.first(present))) return false;
+      if (!model.decode(chunk.coder, desc.record, previous, block.first(present))) return false;
     } else {
-      model.encode(chunk.coder, desc.record, past, chunk.in(position).first(present));
+      model.encode(chunk.coder, desc.record, previous, chunk.in(position).first(present));
     }
     if (!chunk.goes_on()) return false;
   }

@@ -6,6 +6,6 @@
 namespace gicodec::native {
 
 /// Counts of values by bin_of(). Of integer arithmetic alone: the same everywhere.
-[[nodiscard]] Member fit_member(const std::uint32_t (&counts)[kBins]) noexcept;
+[[nodiscard]] Distribution fit_distribution(const std::uint32_t (&counts)[kBins]) noexcept;
 
 }  // namespace gicodec::native

@@ -8,11 +8,11 @@
 
 namespace gicodec::reference {
 
-enum From { kConstant, kCap, kPast, kAverage, kPastChange };
+enum From { kConstant, kFrequent, kPrevious, kAverage, kPreviousChange };
 struct Mode {
   From from;
   const char* neighbours;
-  int w, n, nw, ne, a, klass;
+  int w, n, nw, ne, a, context_class;
 };
 
 inline int word(int v) { return v & 0xFFFF; }
@@ -90,28 +90,28 @@ inline int residual(unsigned u, bool flip) {
 
 /// What a mode predicts from, at one texel.
 inline int source(const Mode& m, const Surroundings& s, std::size_t p, std::size_t t, int constant,
-                  int cap) {
+                  int frequent) {
   const auto known = [&](char axis) -> int { return axis - 'X'; };
   int count = 0, mean = 0;
   for (const char* axis = m.neighbours; *axis != 0; ++axis) {
     const auto& now = s.now[known(*axis)];
     if (!now) continue;
     int v = (*now)[p][t];
-    if (m.from == kPastChange) v = sign(v - (*s.before[known(*axis)])[p][t]);
+    if (m.from == kPreviousChange) v = sign(v - (*s.before[known(*axis)])[p][t]);
     mean = count == 0 ? v : (mean + v + 1) >> 1;
     ++count;
   }
   switch (m.from) {
     case kConstant:
       return constant;
-    case kCap:
-      return cap;
-    case kPast:
-      return (*s.past)[p][t];
+    case kFrequent:
+      return frequent;
+    case kPrevious:
+      return (*s.previous)[p][t];
     case kAverage:
-      return count > 0 ? mean : cap;
-    case kPastChange:
-      return word((*s.past)[p][t] + mean);
+      return count > 0 ? mean : frequent;
+    case kPreviousChange:
+      return word((*s.previous)[p][t] + mean);
   }
   return 0;
 }

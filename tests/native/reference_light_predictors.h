@@ -1,4 +1,4 @@
-// Guesses of light for the reference decoder (docs/native.md, sections 9.5 and 9.6).
+// Predictors of light for the reference decoder (docs/native.md, sections 9.5 and 9.6).
 #pragma once
 
 #include "native/reference_vector_values.h"
@@ -7,52 +7,52 @@
 
 namespace gicodec::reference {
 
-struct Guess {
+struct Predictor {
   Number d;
   std::array<Light, 6> lights{};
-  Number unlike = 0, weight = 0;
+  Number dissimilarity = 0, weight = 0;
   Number nearness = d == 0 ? 4096 : 4096 / d;
 };
-/// What a change of a vertex around makes of the past.
-[[nodiscard]] inline Light moved(const Light& past, const Light& now, const Light& old) {
+/// The previous light plus the change of a light around.
+[[nodiscard]] inline Light moved(const Light& previous, const Light& now, const Light& old) {
   Light out;
   for (unsigned i = 0; i < 3; ++i) {
-    out.direction[i] =
-        brought_into(past.direction[i] + now.direction[i] - old.direction[i], -(1 << 24), 1 << 24);
-    const Number v = past.color[i], to = now.color[i], by = old.color[i];
-    out.color[i] = by == 0 ? std::min(v + to, kMost) : prop(v, std::min(to, 4 * by), by);
+    out.direction[i] = brought_into(previous.direction[i] + now.direction[i] - old.direction[i],
+                                    -(1 << 24), 1 << 24);
+    const Number v = previous.color[i], to = now.color[i], by = old.color[i];
+    out.color[i] = by == 0 ? std::min(v + to, kMax) : prop(v, std::min(to, 4 * by), by);
   }
   return out;
 }
 
-/// What a vertex may be like.
-struct Guesses {
-  std::vector<Guess> all;
-  bool dark_too = true;  ///< what is said of colors is also of guesses without any
+/// The predictors of a vertex.
+struct Predictors {
+  std::vector<Predictor> all;
+  bool dark_too = true;  ///< statistics of colors include predictors without any
   Number total = 0;      ///< of the weights
 
   template <class More>
   void weigh(More more, Number hemispheres) {
     Number greatest = 0;
-    for (Guess& g : all) {
-      const Number by = 32 + (g.unlike + more(g)) / std::max<Number>(hemispheres, 1);
+    for (Predictor& g : all) {
+      const Number by = 32 + (g.dissimilarity + more(g)) / std::max<Number>(hemispheres, 1);
       g.weight = (g.nearness << 40) / (by * by);
       greatest = std::max(greatest, g.weight);
     }
     total = 0;
-    for (Guess& g : all) total += g.weight >>= over(greatest, 12);
+    for (Predictor& g : all) total += g.weight >>= over(greatest, 12);
   }
   template <class Of>
   [[nodiscard]] Number mean(Of of) const {
     Number sum = 0;
-    for (const Guess& g : all) sum += g.weight * of(g);
+    for (const Predictor& g : all) sum += g.weight * of(g);
     return total == 0 ? 0 : sum / total;
   }
-  /// Of something that is said of colors.
+  /// A mean over colors.
   template <class Of>
   [[nodiscard]] Number mean_of_colors(unsigned h, Of of) const {
     Number sum = 0;
-    for (const Guess& g : all) {
+    for (const Predictor& g : all) {
       if (tells_of_colors(g, h)) sum += g.weight * of(g.lights[h].color);
     }
     const Number weights = weight_of_colors(h);
@@ -60,10 +60,10 @@ struct Guesses {
   }
   [[nodiscard]] Number weight_of_colors(unsigned h) const {
     Number weights = 0;
-    for (const Guess& g : all) weights += tells_of_colors(g, h) ? g.weight : 0;
+    for (const Predictor& g : all) weights += tells_of_colors(g, h) ? g.weight : 0;
     return weights;
   }
-  [[nodiscard]] bool tells_of_colors(const Guess& g, unsigned h) const {
+  [[nodiscard]] bool tells_of_colors(const Predictor& g, unsigned h) const {
     return dark_too || g.lights[h].color != Three{};
   }
   [[nodiscard]] Three mean_color(unsigned h) const {

@@ -1,4 +1,4 @@
-#include "native/member_fit.h"
+#include "native/distribution_fit.h"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 namespace gicodec::native {
 namespace {
 
-constexpr unsigned kMostUnits = 255;
+constexpr unsigned kMaxUnits = 255;
 
 constexpr auto kSymbolOfBin = [] {
   std::array<std::array<std::uint8_t, kUsedBins>, kMaxShift + 1> table{};
@@ -23,8 +23,8 @@ constexpr auto kSymbolOfBin = [] {
 using Counts = std::array<std::uint64_t, kSymbols>;
 
 /// Slots in proportion, as far as units and their number allow.
-Member share(Counts counts, std::uint64_t total, unsigned shift, unsigned unit) {
-  Member m{static_cast<std::uint8_t>(unit), static_cast<std::uint8_t>(shift), {}};
+Distribution share(Counts counts, std::uint64_t total, unsigned shift, unsigned unit) {
+  Distribution m{static_cast<std::uint8_t>(unit), static_cast<std::uint8_t>(shift), {}};
   // A symbol is worth its first unit if raw bits of escapes cost more than that takes from the
   // others, which is total · 2^unit / (4096 · ln 2) bits.
   constexpr std::uint64_t kUnitWorth = 2839;
@@ -38,7 +38,7 @@ Member share(Counts counts, std::uint64_t total, unsigned shift, unsigned unit) 
   }
   m.units[kEscape] = 1;
   const std::uint64_t listed = total - counts[kZero], in_all = kProbabilityScale >> unit;
-  const std::uint64_t whole = std::max(total, (listed * in_all + kMostUnits - 1) / kMostUnits);
+  const std::uint64_t whole = std::max(total, (listed * in_all + kMaxUnits - 1) / kMaxUnits);
   const std::uint64_t scale = (in_all << 32) / whole;  // one division for all symbols
   unsigned sum = 0;
   for (unsigned s = 0; s < kListed; ++s) {
@@ -46,12 +46,12 @@ Member share(Counts counts, std::uint64_t total, unsigned shift, unsigned unit) 
     m.units[s] = static_cast<std::uint8_t>(std::max<std::uint64_t>(units, m.units[s]));
     sum += m.units[s];
   }
-  for (; sum > kMostUnits; --sum) --*std::max_element(std::begin(m.units), std::end(m.units));
+  for (; sum > kMaxUnits; --sum) --*std::max_element(std::begin(m.units), std::end(m.units));
   return m;
 }
 
 /// In 1/256 bits.
-std::uint64_t cost(const Counts& counts, const Member& m) {
+std::uint64_t cost(const Counts& counts, const Distribution& m) {
   const auto price = [&](unsigned s, unsigned slots) {
     return frequency_cost(slots) + 256 * raw_bits_of(s, m.shift);
   };
@@ -67,8 +67,8 @@ std::uint64_t cost(const Counts& counts, const Member& m) {
 
 }  // namespace
 
-Member fit_member(const std::uint32_t (&counts)[kBins]) noexcept {
-  Member best{};
+Distribution fit_distribution(const std::uint32_t (&counts)[kBins]) noexcept {
+  Distribution best{};
   std::uint64_t least = UINT64_MAX;
   for (unsigned shift = 0; shift <= kMaxShift; ++shift) {
     Counts symbols{};
@@ -78,10 +78,10 @@ Member fit_member(const std::uint32_t (&counts)[kBins]) noexcept {
     // The finest unit that reaches, and its neighbours.
     const std::uint64_t listed = (total - symbols[kZero]) * kProbabilityScale;
     unsigned reaching = 0;
-    while (reaching < kMaxUnit && listed > total * kMostUnits << reaching) ++reaching;
+    while (reaching < kMaxUnit && listed > total * kMaxUnits << reaching) ++reaching;
     const unsigned coarsest = std::min(reaching + 1, kMaxUnit);
     for (unsigned unit = reaching - (reaching > 0); unit <= coarsest; ++unit) {
-      const Member m = share(symbols, total, shift, unit);
+      const Distribution m = share(symbols, total, shift, unit);
       const std::uint64_t c = cost(symbols, m);
       if (c >= least) continue;
       least = c;
