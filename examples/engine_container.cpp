@@ -1,5 +1,6 @@
 // Packs the textures of an engine into a container, from memory, and plays it back. Here they are
 // RTXGI's; <gicodec/engines.h> has a function for each engine.
+#include <gicodec/engines.h>
 #include <gicodec/gicodec.h>
 
 #include <cstdio>

@@ -10,6 +10,7 @@
 #include "memory_sink.h"
 #include "messages.h"
 
+#include <gicodec/irradiance_vectors.h>
 #include <gicodec/streaming.h>
 #ifdef GICODEC_HEVC
 #include "backend/hevc/payload.h"

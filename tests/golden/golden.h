@@ -3,6 +3,8 @@
 #pragma once
 
 #include "container_support.h"
+
+#include <gicodec/irradiance_vectors.h>
 #include "support.h"
 
 #include <array>

@@ -1,6 +1,9 @@
 // Containers that encode does not write: other kinds, kinds of the future, volumes that are cut
 // into regions, several volumes, errors that are told, files that grow.
 #include "container_support.h"
+
+#include <gicodec/irradiance_vectors.h>
+#include <gicodec/textures.h>
 #include "tools/cli_support.h"
 #include "tools/unknown_volume.h"
 

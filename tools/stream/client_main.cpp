@@ -1,4 +1,5 @@
 // gi-client: receives the light probes that gi-server streams, draws with them, checks them.
+#include "client_flags.h"
 #include "client_recording.h"
 #include "client_summary.h"
 #include "common/cli.h"
@@ -13,14 +14,13 @@
 #include "log.h"
 #include "simulate.h"
 #include "tls.h"
-#include "token.h"
 #include "viewer.h"
 
 #include <fmt/core.h>
 #include <unistd.h>
 
-#include <charconv>
-#include <limits>
+#include <memory>
+#include <string>
 
 namespace {
 
@@ -29,170 +29,8 @@ using namespace gicodec::streaming;
 using tools::Exit;
 using tools::fail;
 
-constexpr int kMost = std::numeric_limits<int>::max();
-
-struct Options {
-  std::string connect, output, record, delivery = "unicast", size = "480x270", subscribe,
-                                       format = "text", pin;
-  ddgi::SceneFlags scene;
-  CameraFlags camera;
-  TokenFlags token;
-  ViewerOptions viewer;
-  std::uint32_t simulate = 0, samples = 1, window_kb = 1024, max_record_mb = 16384, memory = 4096;
-  unsigned threads = 0;
-  kinds::DrawingFlags drawing;
-  bool expect_proofs = false, overwrite = false, quiet = false;
-};
-
-void add_flags(tools::Command& app, Options& o) {
-  app.add_option("--connect", o.connect,
-                 "The server: over ENet, over WebSockets and TLS with wss:// in front, or in clear "
-                 "on this machine with ws://")
-      ->type_name("[wss://]ADDR:PORT")
-      ->required();
-  app.add_option("--ca", o.viewer.link.net.trust.ca,
-                 "wss://: PEM file of authorities that may vouch for the server; default: the "
-                 "system's")
-      ->type_name("FILE");
-  app.add_option("--pin", o.pin,
-                 "wss://: trust the server with this certificate, by its SHA-256, and no other")
-      ->type_name("sha256:HEX");
-  add_token_flags(app, o.token);
-  app.add_option("--delivery", o.delivery,
-                 "unicast: packets made for this client; shared: packets of regions, made for all")
-      ->allow(tools::one_of({"unicast", "shared"}))
-      ->show_default();
-  app.add_option("--budget-blocks", o.viewer.client.budget.blocks,
-                 "Blocks (probes) per update, at most; 0: no limit")
-      ->allow(tools::in_range(0, kMost));
-  app.add_option("--budget-bytes", o.viewer.client.budget.bytes,
-                 "Bytes per update, at most; 0: no limit")
-      ->allow(tools::in_range(0, kMost));
-  app.add_option(
-         "--max-memory", o.memory,
-         "MiB that decoding may take, and drawing other light than probes; a server may ask "
-         "for much")
-      ->allow(tools::in_range(1, 1 << 24))
-      ->show_default()
-      ->type_name("MIB");
-  app.add_option("--subscribe", o.subscribe,
-                 "all, or the probes of a box in the grid, whatever is looked at")
-      ->type_name("all|X0-X1,Y0-Y1,Z0-Z1");
-  app.add_option("--updates", o.viewer.updates, "Leave after N updates; 0: do not")
-      ->allow(tools::in_range(0, kMost))
-      ->type_name("N");
-  app.add_option("--seconds", o.viewer.seconds, "Leave after so long; 0: do not")
-      ->allow(tools::in_range(0.0, 1e9));
-  app.add_option("--patience", o.viewer.link.patience,
-                 "Seconds without a connection after which it gives up")
-      ->allow(tools::in_range(0.1, 1e6))
-      ->show_default();
-  app.add_option("--timeout", o.viewer.link.net.timeout,
-                 "Seconds after which a connection counts as lost")
-      ->allow(tools::in_range(0.1, 1000.0))
-      ->show_default();
-  app.add_option("--record", o.record,
-                 "Write what is received to a container, as it came; where the server's volumes "
-                 "change, or a session begins anew, it goes on in FILE.2.gic and so on")
-      ->type_name("FILE.gic");
-  app.add_option(
-         "--max-record-mb", o.max_record_mb,
-         "With --record: MiB of all its files, after which the recording ends and the client "
-         "goes on; 0: no limit")
-      ->allow(tools::in_range(0, 1 << 30))
-      ->show_default();
-  tools::add_isa(app, o.viewer.client.isa);
-  app.add_option("--threads", o.threads, "Threads to draw with; default: one per processor")
-      ->allow(tools::in_range(1, 256));
-
-  const std::string pictures = "Pictures";
-  ddgi::add_scene_flags(app, o.scene);
-  app.remove_option(app.get_option("--grid"));
-  app.remove_option(app.get_option("--bounds"));
-  add_camera_flags(app, o.camera);
-  for (const char* flag : {"--scene", "--gltf", "--camera", "--orbit"})
-    app.get_option(flag)->group(pictures);
-  app.add_option("-o,--output", o.output,
-                 "Folder for the pictures: with a scene what the camera sees, else the textures")
-      ->type_name("DIR")
-      ->group(pictures);
-  app.add_flag("--overwrite", o.overwrite, "Replace pictures and recordings that are there already")
-      ->group(pictures);
-  app.add_option("--frames", o.viewer.frames, "Pictures to draw")->group(pictures);
-  app.add_option("--fps", o.viewer.fps, "Pictures per second")
-      ->allow(tools::in_range(0.01, 1000.0))
-      ->show_default()
-      ->group(pictures);
-  app.add_option("--size", o.size, "Size of the pictures")
-      ->type_name("WxH")
-      ->show_default()
-      ->group(pictures);
-  app.add_option("--samples", o.samples, "Rays per pixel in each direction")
-      ->allow(tools::in_range(1, 16))
-      ->show_default()
-      ->group(pictures);
-  kinds::add_drawing_flag(app, o.drawing);
-  app.get_option("--set")->group(pictures);
-
-  const std::string checks = "Checks and load";
-  app.add_flag("--expect-proofs", o.expect_proofs,
-               "Exit code 1 unless the server sent hashes of what this client holds, all were "
-               "equal and nothing was lost on the way")
-      ->group(checks);
-  app.add_option("--simulate", o.simulate,
-                 "Be N clients, their cameras along the path; no pictures")
-      ->allow(tools::in_range(1, 4000))
-      ->type_name("N")
-      ->group(checks);
-  app.add_flag("--discard", o.viewer.client.discard,
-               "With --simulate: acknowledge updates without decoding them")
-      ->group(checks);
-  app.add_option("--window-kb", o.window_kb, "Data under way at ENet's level")
-      ->allow(tools::in_range(4, 1 << 16))
-      ->show_default()
-      ->group(checks);
-  app.add_option("--stats", o.format, "Summary as text or json")
-      ->allow(tools::one_of({"text", "json"}))
-      ->show_default();
-  app.add_flag("-q,--quiet", o.quiet, "Nothing but errors");
-}
-
-std::optional<Box3> parse_box(const std::string& text) {
-  if (text.empty() || text == "all") return std::nullopt;
-  Box3 box;
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  bool good = true;
-  const auto number = [&](std::uint32_t& value, char before) {
-    if (before != 0 && (at == end || *at++ != before)) return good = false;
-    const auto parsed = std::from_chars(at, end, value);
-    at = parsed.ptr;
-    return good = good && parsed.ec == std::errc{};
-  };
-  for (std::size_t axis = 0; good && axis < 3; ++axis) {
-    good = number(box.first[axis], axis == 0 ? '\0' : ',') && number(box.last[axis], '-') &&
-           box.first[axis] <= box.last[axis];
-  }
-  if (!good || at != end)
-    fail(Exit::usage, "--subscribe: expected all or a box such as 0-7,0-3,4-11, not \"{}\"", text);
-  return box;
-}
-
-ddgi::RenderOptions render_options(const Options& o) {
-  ddgi::RenderOptions r;
-  const auto size = tools::grid_from_string(o.size + "x1");
-  if (!size || size->x < 1 || size->y < 1 || size->x > 16384 || size->y > 16384) {
-    fail(Exit::usage, "--size: expected a size such as 480x270, at most 16384x16384, not \"{}\"",
-         o.size);
-  }
-  r.width = size->x;
-  r.height = size->y;
-  r.samples = o.samples;
-  return r;
-}
-
 /// Says what came short of what was asked for; fewer pictures than that are well, none are not.
-Exit enough(const Options& o, std::uint64_t updates, std::uint32_t pictures,
+Exit enough(const ClientFlags& o, std::uint64_t updates, std::uint32_t pictures,
             const std::string& why) {
   if (updates < o.viewer.updates) {
     log_line("gi-client: received {} of {}: {}", updates, count(o.viewer.updates, "update"), why);
@@ -203,7 +41,7 @@ Exit enough(const Options& o, std::uint64_t updates, std::uint32_t pictures,
   return pictures == 0 ? Exit::different : Exit::ok;
 }
 
-[[noreturn]] void fail_unanswered(const Options& o) {
+[[noreturn]] void fail_unanswered(const ClientFlags& o) {
   fail(Exit::io, "{}", no_answer(o.viewer.link.server));
 }
 
@@ -212,7 +50,7 @@ struct Received {
   std::uint64_t updates = 0, proofs = 0, failed_proofs = 0, lost = 0;
 };
 
-Exit judge(const Options& o, const Received& r) {
+Exit judge(const ClientFlags& o, const Received& r) {
   if (r.failed_proofs > 0) {
     log_line("gi-client: {} of {} differ from the server's", r.failed_proofs,
              count(r.proofs, "state"));
@@ -236,7 +74,7 @@ Exit judge(const Options& o, const Received& r) {
   return Exit::ok;
 }
 
-Exit run_crowd(const Options& o, const CameraPath& path) {
+Exit run_crowd(const ClientFlags& o, const CameraPath& path) {
   const SimulateOptions options{
       o.viewer.link.server, o.viewer.link.net, o.viewer.client,        o.simulate,
       o.viewer.updates,     o.viewer.seconds,  o.viewer.link.patience, o.viewer.scene};
@@ -264,7 +102,7 @@ Exit run_crowd(const Options& o, const CameraPath& path) {
 }
 
 /// After all else was well.
-Exit recorded(const Options& o, const ClientRecording* recording) {
+Exit recorded(const ClientFlags& o, const ClientRecording* recording) {
   if (recording == nullptr || recording->exit() != Exit::ok)
     return recording == nullptr ? Exit::ok : recording->exit();
   if (!recording->files().empty()) return Exit::ok;
@@ -273,7 +111,8 @@ Exit recorded(const Options& o, const ClientRecording* recording) {
   return Exit::different;
 }
 
-Exit run_viewer(Options& o, const CameraPath& path, Painter* painter, ClientRecording* recording) {
+Exit run_viewer(ClientFlags& o, const CameraPath& path, Painter* painter,
+                ClientRecording* recording) {
   std::unique_ptr<tools::OutputDirectory> folder;
   if (painter != nullptr) folder = std::make_unique<tools::OutputDirectory>(o.output);
   o.viewer.client.listener = recording;
@@ -310,7 +149,7 @@ struct Loaded {
   std::unique_ptr<Painter> painter;
 };
 
-Loaded load(const Options& o, const ddgi::RenderOptions& render) {
+Loaded load(const ClientFlags& o, const ddgi::RenderOptions& render) {
   Loaded loaded;
   if (!o.scene.scene.empty() || !o.scene.gltf.empty())
     loaded.scene = std::make_unique<ddgi::Scene>(ddgi::load_scene(o.scene));
@@ -323,7 +162,7 @@ Loaded load(const Options& o, const ddgi::RenderOptions& render) {
   return loaded;
 }
 
-Exit run(Options& o) {
+Exit run(ClientFlags& o) {
   o.viewer.link.server = parse_server(o.connect, "--connect");
   Trust& trust = o.viewer.link.net.trust;
   if (o.viewer.link.server.via != Via::web && (!trust.ca.empty() || !o.pin.empty()))
@@ -385,8 +224,8 @@ Exit run(Options& o) {
 
 int main(int argc, char** argv) {
   tools::Command app{"Receives light probes from gi-server and draws with them.", "gi-client"};
-  Options options;
-  add_flags(app, options);
+  ClientFlags options;
+  add_client_flags(app, options);
   app.footer(
       kinds::drawing_help() +
       "Exit codes:\n"

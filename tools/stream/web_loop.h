@@ -1,4 +1,4 @@
-// The thread that serves WebSockets. web_loop.cpp alone sees libwebsockets.
+// The thread that serves WebSockets.
 #pragma once
 
 #include "tls.h"

@@ -1,5 +1,5 @@
-// Packets of regions, made once for all who subscribe. Who comes late gets a snapshot, who takes
-// fewer updates than others gets catch-ups, and then the same packets as everybody.
+// Who subscribes to regions, what they hold, and which packets they are handed. Who comes late gets
+// a snapshot, who takes fewer updates than others gets catch-ups, and then the same packets as all.
 #include "base/guard.h"
 #include "session/server/distributor_state.h"
 
@@ -41,34 +41,10 @@ auto find_lagging(Shared& shared, std::span<const Join> joins) noexcept {
                       [&](const Lagging& one) { return holds(joins, one.states); });
 }
 
-/// True if the streams keep contents that are no longer current: of blocks that are not active, or
-/// that changed too little.
-bool holds_earlier(const SharedRegion& shared) noexcept {
-  return std::any_of(shared.streams.begin(), shared.streams.end(), [](const UpdateStream& stream) {
-    for (std::uint32_t block = 0; block < stream.size(); ++block) {
-      if (stream.sent(block) != kNothing && stream.differs(block)) return true;
-    }
-    return false;
-  });
-}
-
 Subscribers& subscribers_of(SharedRegion& shared, std::span<const Join> joins) noexcept {
   if (is_current(shared, joins)) return shared.up_to_date;
   const auto lagging = find_lagging(shared, joins);
   return lagging != shared.lagging.end() ? lagging->subscribers : shared.waiting;
-}
-
-/// What those who hold an earlier state lack in any texture, so that it comes in all of them;
-/// nothing where that makes no difference.
-BlockMask missing_of(const SharedRegion& shared, const Lagging* from,
-                     std::span<const std::uint32_t> blocks) {
-  BlockMask missing;
-  if (from == nullptr || shared.streams.size() == 1) return missing;
-  missing.resize(shared.streams[0].size());
-  for (std::size_t i = 0; i < shared.streams.size(); ++i) {
-    shared.streams[i].mark_missing(from->states[i], blocks, missing);
-  }
-  return missing;
 }
 
 /// A number below `count` that is another one in every update, and evenly spread over some.
@@ -144,62 +120,6 @@ void Distributor::State::allot_extras() noexcept {
   }
 }
 
-/// Moves the streams on, or not at all; then makes what others need to follow them.
-Status Distributor::State::update_region(ServedVolume& volume, Bundle& bundle, std::uint32_t region,
-                                         unsigned thread) {
-  SharedRegion& shared = bundle.regions[region];
-  shared.written = shared.extra = 0;
-  const auto served = [](const Lagging& lagging) { return lagging.subscribers.extra; };
-  if (shared.up_to_date.served == 0 && !shared.waiting.extra &&
-      std::none_of(shared.lagging.begin(), shared.lagging.end(), served)) {
-    return Status::ok;
-  }
-  if (bundle.due) {
-    std::vector<std::uint32_t> dependencies, with_earlier;
-    if (shared.dependencies_changed) {
-      const TextureGroup& group = volume.desc.groups[bundle.group->depends_on];
-      dependencies = volume.dependencies[bundle.group_id].regions(
-          bundle.region_blocks[region],
-          regions_of(group.textures[0].desc, volume.described.region));
-      std::set_union(dependencies.begin(), dependencies.end(), shared.dependencies.begin(),
-                     shared.dependencies.end(), std::back_inserter(with_earlier));
-    }
-    const Status status = advance(volume, bundle, shared, thread);
-    if (status != Status::ok) return status;
-    shared.changed = 0;
-    if (shared.dependencies_changed) {
-      shared.dependencies_changed = holds_earlier(shared);
-      shared.dependencies = std::move(shared.dependencies_changed ? with_earlier : dependencies);
-    }
-  }
-  if (shared.streams[0].keyframe_next()) return Status::ok;
-  Status first = Status::ok;
-  const auto note = [&first](Status status) {
-    if (first == Status::ok) first = status;
-  };
-  const auto make_up = [&](const Lagging* from, Subscribers& subscribers) {
-    if (!subscribers.extra || !subscribers.packets.empty()) return;
-    std::vector<Written> written;
-    note(guarded(
-        [&] { return write(bundle, shared, from, nullptr, thread, written, subscribers); }));
-  };
-  for (Lagging& lagging : shared.lagging) make_up(&lagging, lagging.subscribers);
-  make_up(nullptr, shared.waiting);
-  return first;
-}
-
-/// Active blocks of a region that its streams do not hold as they are.
-std::vector<std::uint32_t> Distributor::State::outdated_blocks(const ServedVolume& volume,
-                                                               const Bundle& bundle,
-                                                               const SharedRegion& shared) const {
-  std::vector<std::uint32_t> blocks;
-  for (std::uint32_t block = 0; block < shared.streams[0].size(); ++block) {
-    if (!volume.is_active(bundle.group_id, shared.streams[0].source(block))) continue;
-    if (bundle.outdated(shared.streams, block)) blocks.push_back(block);
-  }
-  return blocks;
-}
-
 std::uint32_t Distributor::pending_shared(ClientId client) const noexcept {
   ServedClient* const found = state_->find(client);
   if (found == nullptr || found->delivery != Delivery::shared) return 0;
@@ -214,82 +134,6 @@ std::uint32_t Distributor::pending_shared(ClientId client) const noexcept {
   };
   state_->for_each_join(*found, count);
   return blocks;
-}
-
-/// Packets in all textures for those who hold an earlier state, or nothing: those that move the
-/// streams on to `next`, or, if that is null, to where the streams are.
-Status Distributor::State::write(const Bundle& bundle, SharedRegion& shared, const Lagging* from,
-                                 const std::vector<std::uint32_t>* next, unsigned thread,
-                                 std::vector<Written>& written, Subscribers& subscribers) {
-  std::vector<SharedPacket> packets;
-  const auto blocks = next == nullptr ? std::span<const std::uint32_t>() : std::span(*next);
-  const BlockMask missing = missing_of(shared, from, blocks);
-  written.resize(shared.streams.size());
-  for (std::size_t i = 0; i < shared.streams.size(); ++i) {
-    const UpdateStream& stream = shared.streams[i];
-    const StreamState* const held = from == nullptr ? nullptr : &from->states[i];
-    const auto found = worker(thread, stream.desc());
-    if (!found) return found.status();
-    BackendEncoder& encoder = *(*found)->encoder;
-    PacketWriter& writer = (*found)->writer;
-    const Status status =
-        next == nullptr ? stream.catch_up(held, missing, encoder, writer, written[i])
-                        : stream.write_from(held, blocks, missing, encoder, writer, written[i]);
-    if (status != Status::ok) return status;
-    for (WrittenPacket& one : written[i].packets()) {
-      const auto count = static_cast<std::uint32_t>(one.contents.blocks.size());
-      packets.push_back({bundle.textures[i]->id, one.sequence, is_keyframe(one.type),
-                         std::make_shared<const Packet>(std::move(one.packet)), count});
-    }
-  }
-  for (const SharedPacket& packet : packets) {
-    shared.written += packet.blocks;
-    if (next == nullptr) shared.extra += packet.blocks;
-  }
-  subscribers.packets = std::move(packets);
-  return Status::ok;
-}
-
-/// Moves the streams on to what changed, by packets for those who need some anyway: who is up to
-/// date, else some of those who lag, else those who wait. Who held the state before lags
-/// then.
-Status Distributor::State::advance(const ServedVolume& volume, const Bundle& bundle,
-                                   SharedRegion& shared, unsigned thread) {
-  const auto anybody = [](const Lagging& lagging) { return lagging.subscribers.all > 0; };
-  if (shared.up_to_date.all == 0 &&
-      std::none_of(shared.lagging.begin(), shared.lagging.end(), anybody)) {
-    for (UpdateStream& stream : shared.streams) stream.request_keyframe();
-  }
-  const bool known = !shared.streams[0].keyframe_next();
-  const auto blocks = outdated_blocks(volume, bundle, shared);
-  if (blocks.empty() && known) return Status::ok;
-
-  // Room first, so that nothing can fail once there are packets.
-  if (known) {
-    Lagging before{.states = {}, .until = shared.until(updates - 1), .subscribers = {}};
-    for (const UpdateStream& stream : shared.streams) before.states.push_back(stream.state());
-    shared.lagging.push_back(std::move(before));
-  }
-  const auto needs_some = [](const Lagging& one) { return one.subscribers.extra; };
-  auto from = shared.lagging.end();
-  if (shared.up_to_date.served > 0) {
-    --from;
-  } else if (known) {
-    from = std::find_if(shared.lagging.begin(), shared.lagging.end(), needs_some);
-  }
-  const bool waiting = from == shared.lagging.end();
-  std::vector<Written> written;
-  const Status status = guarded([&] {
-    return write(bundle, shared, waiting ? nullptr : &*from, &blocks, thread, written,
-                 waiting ? shared.waiting : from->subscribers);
-  });
-  if (status != Status::ok) {
-    if (known) shared.lagging.pop_back();
-    return status;
-  }
-  if (known) shared.lagging.back().subscribers.all = std::exchange(shared.up_to_date.all, 0);
-  for (std::size_t i = 0; i < written.size(); ++i) shared.streams[i].commit(written[i]);
-  return Status::ok;
 }
 
 /// True if, of all that the blocks of a region depend on, the client holds what was current since

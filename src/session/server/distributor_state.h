@@ -1,5 +1,5 @@
 // What a Distributor is made of. distributor.cpp answers its calls; distributor_unicast.cpp and
-// distributor_shared.cpp make the packets of the two kinds of delivery.
+// distributor_shared.cpp hand out the packets of the two kinds of delivery.
 #pragma once
 
 #include "session/server/distributor.h"

@@ -19,14 +19,14 @@ bool older(const Candidate& a, const Candidate& b) {
 
 /// What was chosen so far.
 struct Choice {
-  explicit Choice(const Missing& missing_in) : missing_dependencies(missing_in) {}
+  explicit Choice(const Missing& missing_in) : missing(missing_in) {}
 
   /// Takes what a candidate lacks and then itself, or as many of these as have room among `most`
   /// blocks; false if not all have.
   bool take(const Candidate& candidate, std::size_t most) {
     if (missing) {
       if (taken.contains(place(candidate))) return true;
-      for (const Candidate& before : missing_dependencies(candidate)) {
+      for (const Candidate& before : missing(candidate)) {
         if (!take(before, most)) return false;
       }
     }

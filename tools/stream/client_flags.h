@@ -1,0 +1,37 @@
+// What gi-client can be told on its command line.
+#pragma once
+
+#include "client_camera.h"
+#include "common/cli.h"
+#include "ddgi/scene_source.h"
+#include "kinds/kind_flags.h"
+#include "token.h"
+#include "viewer.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace gicodec::streaming {
+
+/// As the command line gives them.
+struct ClientFlags {
+  std::string connect, output, record, delivery = "unicast", size = "480x270", subscribe,
+                                       format = "text", pin;
+  ddgi::SceneFlags scene;
+  CameraFlags camera;
+  TokenFlags token;
+  ViewerOptions viewer;
+  std::uint32_t simulate = 0, samples = 1, window_kb = 1024, max_record_mb = 16384, memory = 4096;
+  unsigned threads = 0;
+  kinds::DrawingFlags drawing;
+  bool expect_proofs = false, overwrite = false, quiet = false;
+};
+
+void add_client_flags(tools::Command& app, ClientFlags& flags);
+/// Of --subscribe; nothing for all blocks. Throws tools::Error.
+[[nodiscard]] std::optional<Box3> parse_box(const std::string& text);
+/// How pictures are drawn. Throws tools::Error.
+[[nodiscard]] ddgi::RenderOptions render_options(const ClientFlags& flags);
+
+}  // namespace gicodec::streaming

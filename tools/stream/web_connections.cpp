@@ -1,0 +1,212 @@
+// What becomes of each connection of a WebLoop: taken, opened, written to, looked after, gone.
+#include "clock.h"
+#include "web_loop_state.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace gicodec::streaming {
+namespace {
+
+static_assert(kFrameRoom >= LWS_PRE);
+constexpr std::size_t kChunk = 64 << 10;  ///< bytes that leave at once
+/// Seconds that a client has to read the reason and to close: with what it still sends unread,
+/// closing would reset the connection, which overtakes the reason.
+constexpr double kReading = 0.4;
+
+}  // namespace
+
+void WebLoop::Loop::accept() {
+  TcpPeer peer;
+  for (std::size_t i = 0; i < HalfOpen::kMost; ++i) {  // Others have their turn as well.
+    const int descriptor = accept_tcp(state.listener, peer);
+    if (descriptor < 0) return;
+    WebLink* const link = enter(peer);
+    if (link == nullptr) {
+      ::close(descriptor);
+      continue;
+    }
+    lws_adopt_desc_t adopted{};
+    adopted.vh = vhost;
+    adopted.type =
+        static_cast<lws_adoption_type>(LWS_ADOPT_SOCKET | LWS_ADOPT_HTTP | LWS_ADOPT_ALLOW_SSL);
+    adopted.fd.sockfd = descriptor;
+    adopted.opaque = link;
+    lws* const wsi = lws_adopt_descriptor_vhost_via_info(&adopted);
+    // What failed is closed, and gone() has heard of it or not.
+    const std::lock_guard lock(state.mutex);
+    if (!state.links.contains(link)) continue;
+    link->wsi = wsi;
+    if (wsi != nullptr) continue;
+    leave(link);
+    state.forget(link);
+  }
+}
+
+/// A place for a connection; nullptr if there is no room or no memory for it.
+WebLink* WebLoop::Loop::enter(const TcpPeer& peer) {
+  if (open_links >= state.options.links) return nullptr;
+  WebLink* link = nullptr;
+  try {
+    auto made = std::make_unique<WebLink>();
+    made->peer = peer;
+    made->accepted = true;
+    made->since = now();
+    std::size_t& of_host = hosts[peer.host];
+    if (of_host >= state.options.links_per_address) {
+      WebLink* const crowded = half_open.take(peer.host);
+      if (crowded == nullptr) return nullptr;
+      kill(crowded);
+    }
+    link = state.add(std::move(made));
+    WebLink* const oldest = half_open.add(link);
+    ++of_host;
+    if (oldest != nullptr) kill(oldest);
+    return link;
+  } catch (const std::bad_alloc&) {
+    std::erase_if(hosts, [](const auto& host) { return host.second == 0; });
+    const std::lock_guard lock(state.mutex);
+    state.forget(link);
+    return nullptr;
+  }
+}
+
+/// It does not count any more.
+void WebLoop::Loop::leave(WebLink* link) {
+  half_open.remove(link);
+  if (!link->accepted) return;
+  const auto it = hosts.find(link->peer.host);
+  if (it != hosts.end() && --it->second == 0) hosts.erase(it);
+}
+
+void WebLoop::Loop::begin(WebLink* link) {
+  const std::string host = to_string(Address{link->server.host, link->server.port, Via::enet});
+  lws_client_connect_info info{};
+  info.context = context;
+  info.vhost = vhost;
+  info.address = link->server.host.c_str();
+  info.port = link->server.port;
+  info.path = "/";
+  info.host = host.c_str();
+  info.protocol = info.local_protocol_name = kWebProtocol;
+  info.ietf_version_or_minus_one = -1;
+  info.opaque_user_data = link;
+  beginning = link;
+  failed = false;
+  why.clear();
+  info.retry_and_idle_policy = &patience;
+  // Names are looked at in objection(), those of IPv6 too.
+  if (link->server.via == Via::web)
+    info.ssl_connection = LCCSCF_USE_SSL | LCCSCF_SKIP_SERVER_CERT_HOSTNAME_CHECK;
+  lws* const wsi = lws_client_connect_via_info(&info);
+  beginning = nullptr;
+  if (wsi == nullptr || failed) return gone(link, why);
+  link->wsi = wsi;
+}
+
+int WebLoop::Loop::opened(WebLink* link, lws* wsi) {
+  half_open.remove(link);
+  ++open_links;
+  link->wsi = wsi;
+  link->open = true;
+  state.tell(link, NetEvent::Kind::opened);
+  return 0;
+}
+
+int WebLoop::Loop::write(WebLink* link) {
+  while (lws_send_pipe_choked(link->wsi) == 0) {
+    Outgoing* out = nullptr;
+    {
+      const std::lock_guard lock(state.mutex);
+      if (link->unsent.empty()) {
+        if (!link->closing) return 0;
+        if (link->accepted && link->told == 0) link->told = now();
+        if (link->accepted && now() - link->told < kReading) return 0;  // look_after_all() ends it.
+        if (link->broken) return kill(link), 0;  // What it still sends is not waited for.
+        lws_close_reason(link->wsi, LWS_CLOSE_STATUS_NORMAL, nullptr, 0);
+        return -1;
+      }
+      out = &link->unsent.front();  // Stays where it is: others are added behind it.
+    }
+    const std::size_t left = out->bytes.size() - kFrameRoom - out->done;
+    const std::size_t size = std::min(left, kChunk);
+    const int flags = lws_write_ws_flags(LWS_WRITE_BINARY, out->done == 0, size == left);
+    if (lws_write(link->wsi, out->bytes.data() + kFrameRoom + out->done, size,
+                  static_cast<lws_write_protocol>(flags)) < 0) {
+      return -1;
+    }
+    const std::lock_guard lock(state.mutex);
+    out->done += size;
+    link->unsent_bytes -= size;
+    if (size == left) link->unsent.pop_front();
+  }
+  lws_callback_on_writable(link->wsi);
+  return 0;
+}
+
+/// The connection is no more, whatever it was.
+void WebLoop::Loop::gone(WebLink* link, const std::string& reason) {
+  if (link == beginning) {
+    failed = true;
+    why = reason;
+    return;
+  }
+  if (link->open) --open_links;
+  leave(link);
+  const bool announced = link->open || !link->accepted;
+  link->open = false;
+  link->wsi = nullptr;
+  // What answered and was found wanting will be so again.
+  if (!link->why.empty())
+    return state.closed(link, announced, "the server is not trusted: " + link->why, true);
+  const bool foreign = reason.starts_with("HS:");  // libwebsockets, of answers to the upgrade
+  state.closed(link, announced,
+               foreign ? "what answers there is no gi-server; is it the port?" : reason, foreign);
+}
+
+int WebLoop::Loop::answer(WebLink* link, lws* wsi) {
+  Shown what;
+  {
+    const std::lock_guard lock(state.mutex);
+    what = state.shown;
+  }
+  const WebRequest request{lws_hdr_total_length(wsi, WSI_TOKEN_GET_URI) > 0,
+                           header(wsi, WSI_TOKEN_GET_URI),
+                           header(wsi, WSI_TOKEN_HTTP_AUTHORIZATION), link->peer.loopback};
+  std::string text(LWS_PRE, '\0');
+  text += web_answer(request, what, state.listen.metrics_token, now());
+  lws_write(wsi, reinterpret_cast<unsigned char*>(text.data()) + LWS_PRE, text.size() - LWS_PRE,
+            LWS_WRITE_HTTP_FINAL);
+  return -1;  // One answer for each connection.
+}
+
+void WebLoop::Loop::look_after_all() {
+  const double at = now();
+  std::vector<WebLink*> ends;
+  for (WebLink* const link : half_open.all()) {
+    if (at - link->since > state.options.open_timeout && link->wsi != nullptr) ends.push_back(link);
+  }
+  std::vector<WebLink*> open;
+  {
+    const std::lock_guard lock(state.mutex);
+    for (const auto& [link, owner] : state.links) {
+      if (!link->open) continue;
+      open.push_back(link);
+      if (link->closing && at - link->closing_since > state.options.timeout) ends.push_back(link);
+      if (link->told > 0 && at - link->told > kReading) lws_callback_on_writable(link->wsi);
+    }
+  }
+  for (WebLink* const link : open) {
+    const TcpState before = std::exchange(link->tcp, tcp_state(lws_get_socket_fd(link->wsi)));
+    // A long message on a slow link is a sign of life too.
+    if (link->tcp.read != before.read || link->tcp.taken != before.taken)
+      lws_validity_confirmed(link->wsi);
+    link->round_trip_ms = link->tcp.round_trip_ms;
+    if (!link->broken && floods(*link, at)) state.refuse(link, Reason::flood);
+  }
+  for (WebLink* const link : ends) kill(link);
+}
+
+}  // namespace gicodec::streaming

@@ -1,0 +1,78 @@
+// What a WebLoop is made of. web_loop.cpp and web_connections.cpp alone see libwebsockets.
+#pragma once
+
+#include "web_loop.h"
+#include "web_state.h"
+
+#include <libwebsockets.h>
+
+#include <array>
+#include <atomic>
+#include <map>
+#include <string>
+#include <thread>
+
+namespace gicodec::streaming {
+
+inline constexpr const char* kWebProtocol = "gicodec";
+
+[[nodiscard]] inline std::string header(lws* wsi, lws_token_indexes which) {
+  std::array<char, 512> text{};
+  const int size = lws_hdr_copy(wsi, text.data(), static_cast<int>(text.size()), which);
+  return size > 0 ? std::string(text.data(), static_cast<std::size_t>(size)) : std::string();
+}
+
+/// web_loop.cpp serves, web_connections.cpp has what becomes of each connection.
+struct WebLoop::Loop {
+  Loop(WebState& state_in, TlsContext certificate_in)
+      : state(state_in), certificate(std::move(certificate_in)) {}
+  ~Loop();
+  Loop(const Loop&) = delete;
+  Loop& operator=(const Loop&) = delete;
+
+  void start();
+  void serve();
+  static int on_event(lws* wsi, lws_callback_reasons reason, void* user, void* in,
+                      std::size_t size);
+  int take(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::size_t size);
+  void accept();
+  WebLink* enter(const TcpPeer& peer);
+  void leave(WebLink* link);
+  void take_wishes();
+  void begin(WebLink* link);
+  int opened(WebLink* link, lws* wsi);
+  int write(WebLink* link);
+  void gone(WebLink* link, const std::string& reason);
+  int answer(WebLink* link, lws* wsi);
+  void look_after_all();
+  /// Ends it soon. One that libwebsockets does not have, not yet or no more, has nothing to end.
+  static void kill(WebLink* link) {
+    if (link->wsi != nullptr)
+      lws_set_timeout(link->wsi, PENDING_TIMEOUT_USER_OK, LWS_TO_KILL_ASYNC);
+  }
+
+  struct Timer {
+    lws_sorted_usec_list_t sul{};
+    Loop* loop = nullptr;
+  };
+
+  WebState& state;
+  TlsContext certificate;
+  lws_protocols protocols[2]{};
+  lws_retry_bo_t patience{};
+  lws_context* context = nullptr;
+  lws_vhost* vhost = nullptr;
+  ssl_ctx_st* server_context = nullptr;
+  bool prepared = true;
+  WebLink* beginning = nullptr;  ///< that is being connected
+  bool failed = false;           ///< it came to nothing at once; `why` says more
+  std::string why;
+  HalfOpen half_open;
+  std::map<std::string, std::size_t> hosts;  ///< connections of each
+  std::size_t open_links = 0;
+  Timer timer;
+  std::atomic<bool> woken = false, stop = false;
+  std::jthread thread;
+};
+
+}  // namespace gicodec::streaming
