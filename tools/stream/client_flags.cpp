@@ -64,9 +64,10 @@ void add_client_flags(tools::Command& app, ClientFlags& o) {
                  "Write what is received to a container, as it came; where the server's volumes "
                  "change, or a session begins anew, it goes on in FILE.2.gic and so on")
       ->type_name("FILE.gic");
-  app.add_option("--max-record-mb", o.max_record_mb,
-                 "--record: MiB of all its files, after which the recording ends and the client "
-                 "goes on; 0: no limit")
+  app.add_option(
+         "--max-record-mb", o.max_record_mb,
+         "With --record: MiB of all its files, after which the recording ends and the client "
+         "goes on; 0: no limit")
       ->allow(tools::in_range(0, 1 << 30))
       ->show_default();
   tools::add_isa(app, o.viewer.client.isa);
@@ -113,7 +114,7 @@ void add_client_flags(tools::Command& app, ClientFlags& o) {
       ->type_name("N")
       ->group(checks);
   app.add_flag("--discard", o.viewer.client.discard,
-               "--simulate: acknowledge updates without decoding them")
+               "With --simulate: acknowledge updates without decoding them")
       ->group(checks);
   app.add_option("--window-kb", o.window_kb, "Data under way at ENet's level")
       ->allow(tools::in_range(4, 1 << 16))
