@@ -13,7 +13,7 @@ namespace gicodec {
 namespace {
 
 constexpr BlockShape kBrick{4, 4, 4};
-/// Blocks of maps, and of 3D textures, whose long rows native codes best.
+/// Blocks of maps, and of 3D textures, for which native codes long rows best.
 constexpr BlockShape kTile{8, 8, 1}, kRows{16, 4, 1};
 
 NamedTexture named(std::string name, const TextureDesc& desc, Preview preview = Preview::none) {
