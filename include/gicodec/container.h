@@ -59,6 +59,7 @@ struct VolumeEntry {
   VolumeDesc desc;  ///< `description` as read, with layouts; no sets if the kind is unknown
 };
 
+/// The volumes and textures of a container. All text is UTF-8.
 struct ContainerDescription {
   std::uint64_t epoch = 0;  ///< the publisher's run that frames belong to; 0: unknown
   SceneId scene;
