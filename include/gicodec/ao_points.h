@@ -46,8 +46,7 @@ struct AoPoint {
 /// Never 0. Values out of range or infinite become the nearest in range, NaN becomes 0, and a
 /// normal without direction +z.
 [[nodiscard]] std::uint32_t pack_ao_point(const AoPoint& point) noexcept;
-/// `place` is the centre of its 1/32 of the cell. nullopt for a free place, whatever its other bits
-/// are.
+/// `place` is the centre of its 1/32 of the cell. nullopt for a free place.
 [[nodiscard]] std::optional<AoPoint> unpack_ao_point(std::uint32_t bits) noexcept;
 /// The point with another visibility.
 [[nodiscard]] constexpr std::uint32_t with_visible(std::uint32_t bits,
@@ -64,7 +63,7 @@ struct AoEntry {
 };
 /// Precondition: the entry is in range.
 [[nodiscard]] std::uint64_t pack_ao_entry(const AoEntry& entry) noexcept;
-/// nullopt for a free entry, whatever its other bits are.
+/// nullopt for a free entry.
 [[nodiscard]] std::optional<AoEntry> unpack_ao_entry(std::uint64_t bits) noexcept;
 
 /// An instance's grid of cells, in the instance's space, and its part of the hash table.

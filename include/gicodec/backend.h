@@ -44,6 +44,7 @@ struct MirrorView {
   }
 };
 
+/// The blocks of a packet to encode.
 struct EncodeJob {
   const TextureDesc& desc;
   std::span<const std::uint32_t> blocks;  ///< ascending, unique, in range
@@ -58,6 +59,7 @@ struct EncodeJob {
   std::span<std::byte> decoded = {};  ///< lossy backends write what a decoder gets
 };
 
+/// A payload to decode.
 struct DecodeJob {
   const TextureDesc& desc;
   std::span<const std::uint32_t> blocks;  ///< ascending, unique, in range

@@ -59,6 +59,7 @@ struct VolumeEntry {
   VolumeDesc desc;  ///< `description` as read, with layouts; no groups if the kind is unknown
 };
 
+/// The volumes and textures of a container. All text is UTF-8.
 struct ContainerDescription {
   std::uint64_t epoch = 0;  ///< the publisher's run that frames belong to; 0: unknown
   SceneId scene;
@@ -138,8 +139,7 @@ class ContainerReader {
 
   /// Reads the next packet into `packet`. Status::end after the last one. Status::truncated if the
   /// file was cut off or is growing: all packets before are sound, and if the source can seek, a
-  /// later call finds what was added. After any other error next() answers Status::end until
-  /// seek().
+  /// later call finds what was added. After any other error only seek() goes on.
   [[nodiscard]] Status next(ContainerPacket& packet);
 
   /// Limits next() to packets of these; it skips others without reading them if the index lists

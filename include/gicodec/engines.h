@@ -19,8 +19,7 @@ namespace GICODEC_API gicodec {
 // Each function answers invalid_description if the numbers do not make a volume, and
 // unsupported_format for unknown formats. Several threads may call all of them at once.
 
-/// Stengel et al. §3.2: "color" A2R10G10B10 with a core of 8×8, "vis" RG16F of 16×16; an atlas
-/// each.
+/// Stengel et al. §3.2: "color" A2R10G10B10 with a core of 8×8, "vis" RG16F of 16×16; atlases.
 [[nodiscard]] Result<VolumeDesc> paper_volume(Grid probes);
 /// G3D::DDGIVolume: the same with R in the low bits, and the probes' offsets, signed 8-bit integers
 /// that are described as SNORM.

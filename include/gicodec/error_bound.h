@@ -25,8 +25,7 @@ namespace GICODEC_API gicodec {
 /// The bound of records coded twice, under one bound and then the other. Counts add up; infinity
 /// (unknown) for any other two bounds that are not 0.
 [[nodiscard]] float both_errors(float first, float second) noexcept;
-/// True if every component of `decoded` keeps the bound. Precondition: both hold whole records, the
-/// same number.
+/// True if every component of `decoded` keeps the bound. Both hold the same number of records.
 [[nodiscard]] bool within_error(const Record& record, std::span<const std::byte> given,
                                 std::span<const std::byte> decoded, float max_error) noexcept;
 

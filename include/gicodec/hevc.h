@@ -47,8 +47,7 @@ class HevcBackend final : public Backend {
   std::string_view name() const override { return "hevc"; }
   /// Reads settings.preset (x265's names; default "medium") and settings.threads, 1..64; refuses a
   /// level. limit_exceeded if the grid's picture is wider or higher than HEVC coders take. Skips an
-  /// FFmpeg encoder that cannot be opened, or that later delays, loses or garbles pictures, for the
-  /// next one.
+  /// FFmpeg encoder that cannot be opened, or later delays, loses or garbles pictures.
   Result<std::unique_ptr<BackendEncoder>> make_encoder(
       const TextureDesc& desc, const BackendSettings& settings) const override;
   Result<std::unique_ptr<BackendDecoder>> make_decoder(const TextureDesc& desc) const override;

@@ -30,8 +30,7 @@ class Source {
   [[nodiscard]] virtual Result<std::size_t> read(std::span<std::byte> into) = 0;
   /// Total bytes if the source can seek, else nullopt (a pipe). May grow between calls.
   [[nodiscard]] virtual std::optional<std::uint64_t> size() const { return std::nullopt; }
-  /// The next read() begins at `offset`. Precondition: size() has a value, and offset is at most
-  /// it.
+  /// The next read() begins at `offset`. Precondition: size() has a value, at least `offset`.
   virtual Status seek(std::uint64_t /*offset*/) { return Status::io_failed; }
 };
 

@@ -12,10 +12,10 @@ namespace GICODEC_API gicodec {
 
 inline constexpr std::uint8_t kKindIrradianceVectors = 2;
 
-/// Kind 2: one group of one texture, "vectors", a block of 6×1×1 records per vertex. direction · (R
-/// + G + B) of two opposite hemispheres should have the same sum for all three axes, as it has when
-/// all are integrated from the same rays; native uses this. A vertex of zeros has no light, e.g.
-/// within a wall; the renderer interpolates it from its neighbours.
+/// Kind 2: one group of one texture, "vectors", a block of 6×1×1 records per vertex. The sum of
+/// direction · (R + G + B) over two opposite hemispheres should be the same for all three axes, as
+/// it is if all are integrated from the same rays; native uses this. A vertex of zeros has no
+/// light, e.g. within a wall; the renderer interpolates it from its neighbours.
 extern const Kind kIrradianceVectors;
 
 /// A volume of this kind, with records colored_direction(floats): quantised as in §3.3, or floats.

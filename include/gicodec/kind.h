@@ -92,8 +92,7 @@ struct Kind {
 
 /// The library's kinds; static storage.
 [[nodiscard]] std::span<const Kind* const> built_in_kinds() noexcept;
-/// Searches the built-in kinds, then `others`; nullptr if unknown. Skips kinds without `write` or
-/// `read`.
+/// Searches the built-in kinds, then `others`. nullptr if unknown, or without `write` or `read`.
 [[nodiscard]] const Kind* find_kind(std::uint8_t id,
                                     std::span<const Kind* const> others = {}) noexcept;
 [[nodiscard]] const Kind* find_kind(std::string_view name,

@@ -11,7 +11,7 @@ namespace GICODEC_API gicodec {
 
 using Packet = std::vector<std::byte>;
 
-/// What a packet builds on, and what it stands for.
+/// What a packet builds on, and which packets it replaces.
 enum class PacketType : std::uint8_t {
   keyframe = 0,        ///< needs no reference; blocks that it does not list become zero
   delta = 1,           ///< builds on its reference; blocks that it does not list stay

@@ -25,8 +25,7 @@ enum class PhotonForm : std::uint8_t {
 };
 
 /// Kind 5: one group of three bundled textures over a pool of batches: "count" (R16_UINT, the
-/// number of stored photons), "batch" (PhotonBatch) and "photons", of which the first `count`
-/// exist.
+/// number of stored photons), "batch" (PhotonBatch) and "photons" (the first `count` exist).
 extern const Kind kPhotons;
 
 /// A volume of `batches`, 1..kMaxBlocks, with room for `capacity` photons each: 1..64, a multiple

@@ -24,8 +24,8 @@ struct PlayerOptions {
   /// max_total_bytes covers the peak of all decoders and the packets of a frame. A decoder counts
   /// from the first packet of its texture, or region, on.
   DecodeLimits limits = {};
-  std::vector<const Backend*> backends = {};  ///< besides the built-in; must outlive it
-  std::vector<const Kind*> kinds = {};        ///< the same
+  std::vector<const Backend*> backends = {};  ///< besides the built-in ones; outlive the player
+  std::vector<const Kind*> kinds = {};        ///< likewise
   Threads threads = {};                       ///< per packet
   Isa isa = best_isa();                       ///< kernels; the machine must have it
 };

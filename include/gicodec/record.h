@@ -43,8 +43,7 @@ enum class Format : std::uint32_t {
   BC7_SRGB_BLOCK = 146,
 };
 
-/// How the bits of a component are read. Lossless codecs do not use it; error bounds, thresholds
-/// and tools do.
+/// How the bits of a component are read. For error bounds, thresholds and tools only.
 enum class ComponentKind : std::uint8_t {
   unorm = 0,
   snorm = 1,

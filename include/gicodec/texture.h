@@ -26,6 +26,7 @@ struct BlockShape {
   friend constexpr bool operator==(const BlockShape&, const BlockShape&) = default;
 };
 
+/// How the blocks of a texture relate in space.
 enum class Space : std::uint8_t {
   grid = 0,  ///< places with neighbours
   pool = 1,  ///< numbered slots without neighbours
@@ -57,12 +58,13 @@ enum class Model : std::uint8_t {
   /// Requires Presence::brick.
   octree = 4,
   /// A block is the light at a grid vertex: a colored_direction() for each hemisphere, around +x,
-  /// −x, +y, −y, +z, −z. Opposite hemispheres have the same sum. Requires blocks of 6×1×1 and
-  /// Presence::all.
+  /// −x, +y, −y, +z, −z. The sum of direction · (R + G + B) over opposite ones is the same along
+  /// all three axes. Requires blocks of 6×1×1 and Presence::all.
   hemispheres = 5,
 };
 
-/// Where the tile of block (x, y, z) lies: column, row, slice. A tile is as deep as its block.
+/// Where the tile of block (x, y, z) lies: column, row, slice. A tile is a block with its guard
+/// band and padding, as deep as the block.
 enum class Tiling : std::uint8_t {
   atlas_xy_z = 0,   ///< column x + nx·y, row z: the DDGI paper's atlas, G3D
   atlas_xz_y = 1,   ///< column x + nx·z, row y

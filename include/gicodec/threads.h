@@ -18,8 +18,7 @@ struct Executor {
 
 inline constexpr unsigned kMaxThreads = 256;
 
-/// The caller's thread and `count` - 1 others; `count` is 1..kMaxThreads. Results do not depend on
-/// it.
+/// The caller's thread and `count` - 1 others, 1..kMaxThreads. Results do not depend on `count`.
 struct Threads {
   constexpr Threads(unsigned count_in = 1, Executor executor_in = {}) noexcept  // NOLINT
       : count(count_in), executor(executor_in) {}

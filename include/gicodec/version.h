@@ -16,8 +16,7 @@ inline constexpr std::string_view kVersionString = "0.1.0";
 
 /// Version of the packet layout, the low nibble of a packet's first byte (FORMAT.md, "Packet").
 inline constexpr std::uint8_t kPacketVersion = 1;
-/// Version of the container layout; a reader accepts any minor of its major (FORMAT.md,
-/// "Container").
+/// Version of containers; readers accept any minor of their major (FORMAT.md, "Container").
 inline constexpr std::uint8_t kContainerMajor = 1;
 inline constexpr std::uint8_t kContainerMinor = 0;
 

@@ -28,8 +28,7 @@ struct SceneId {
 
 /// Where the blocks of a grid stand. Cell c stands at origin + c · spacing; along an axis of n
 /// blocks, c runs from scroll to scroll + n − 1. The texture holds cell c in block c mod n, so that
-/// a scrolling volume replaces only the planes that enter. Without scrolling, cell and block are
-/// the same.
+/// a scrolling volume replaces only the planes that enter. Without scrolling, c is the block.
 struct VolumeGeometry {
   Grid grid;  ///< of the volume's first texture group; a pool: {slots, 1, 1}
   Position origin{0, 0, 0};
@@ -83,8 +82,7 @@ class RegionGrid {
   [[nodiscard]] std::uint32_t region_of(std::uint32_t block) const noexcept;
   /// The block index of each block of a region, in the region's order. Throws std::bad_alloc.
   [[nodiscard]] std::vector<std::uint32_t> blocks_of(std::uint32_t region) const;
-  /// The block index of block `number` of a region, and the inverse: a block's number in its
-  /// region.
+  /// The block index of block `number` of a region, and the inverse.
   [[nodiscard]] std::uint32_t block_of(std::uint32_t region, std::uint32_t number) const noexcept;
   [[nodiscard]] std::uint32_t number_of(std::uint32_t block) const noexcept;
   /// The place of a region's first block, in blocks along each axis.

@@ -121,8 +121,7 @@ Status check_compressed(Compression method, std::span<const std::byte> in,
       sound = !in.empty() && size / 255 <= in.size();
       break;
     case Compression::zstd: {
-      // Exactly one frame with its content's size: no skippable frames, none of zstd's older
-      // formats.
+      // Exactly one frame with its content's size: no skippable frames, no older formats.
       std::uint32_t magic = 0;
       if (in.size() < sizeof magic) break;
       std::memcpy(&magic, in.data(), sizeof magic);

@@ -9,8 +9,7 @@
 
 namespace gicodec {
 
-/// Searches the caller's backends, then the built-in ones, which the caller's thus replace; nullptr
-/// if unknown.
+/// Searches the caller's backends, then the built-in ones; nullptr if unknown.
 [[nodiscard]] const Backend* find_backend(std::span<const Backend* const> callers,
                                           std::string_view name) noexcept;
 /// Searches the built-in backends; nullptr if unknown.

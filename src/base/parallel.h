@@ -72,8 +72,7 @@ void for_each_item(const Threads& threads, std::size_t items, Body&& body) {
 #endif
 
 /// Calls body(thread, first, count) for ranges that cover all items. Each thread gets at least
-/// `minimum` items, because waking a thread takes tens of microseconds. Throws only what `body`
-/// does.
+/// `minimum` items, as waking a thread takes tens of microseconds.
 template <typename Body>
 void for_each_range(const Threads& threads, std::size_t items, std::size_t minimum, Body&& body) {
   const unsigned count = thread_count(threads, items / minimum);

@@ -93,8 +93,8 @@ struct IndexPartHead {
 [[nodiscard]] Result<IndexPartHead> read_index_part_head(std::span<const std::byte> body);
 /// True if `tail`, the last kIndexTail bytes of a body, belongs to the part at `offset`.
 [[nodiscard]] bool is_index_tail(std::span<const std::byte> tail, std::uint64_t offset) noexcept;
-/// Appends the packets of the part at `offset` to `index`. Their entries are at `begin` or later,
-/// and behind those already in `index`; else corrupt.
+/// Appends the packets of the part at `offset` to `index`. corrupt unless their entries are at
+/// `begin` or later and before the part, and their frames not before those in `index`.
 Status read_index_part(std::span<const std::byte> body, std::span<const PacketRule> rules,
                        std::uint64_t begin, std::uint64_t offset, std::vector<SeekEntry>& index);
 

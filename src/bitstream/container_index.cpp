@@ -8,8 +8,7 @@
 namespace gicodec {
 namespace {
 
-/// The search for the last part: bytes from the end of the file, bytes read at once, and candidates
-/// tried.
+/// The search for the last part: bytes from the file's end, bytes read at once, candidates tried.
 constexpr std::uint64_t kSearch = std::uint64_t{16} << 20;
 constexpr std::uint64_t kWindow = std::uint64_t{48} << 10;
 constexpr int kTries = 16;

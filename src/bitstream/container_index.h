@@ -1,5 +1,4 @@
-// The index of a container: the packets of its index parts, and those behind them in a growing
-// file.
+// The index of a container: the packets of its index parts, and those behind them.
 #pragma once
 
 #include "bitstream/entry_reader.h"

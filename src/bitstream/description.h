@@ -26,8 +26,7 @@ void write_texture(const TextureDesc& desc, ByteWriter& writer);
 /// The inverse, with a default layout. Fails the reader unless validate() accepts the texture.
 [[nodiscard]] TextureDesc read_texture(ByteReader& reader);
 
-/// Appends the description of a volume. unknown_kind; invalid_description unless it reads back as
-/// given.
+/// Appends a volume's description. unknown_kind; invalid_description unless it reads back as given.
 [[nodiscard]] Status write_volume_desc(const VolumeDesc& volume, std::span<const Kind* const> kinds,
                                        std::vector<std::byte>& out);
 

@@ -10,8 +10,7 @@
 namespace gicodec {
 namespace {
 
-/// First of the growing steps in which bytes are read, so that a false size in a short file costs
-/// no memory.
+/// First of the growing steps in which bytes are read, so that false sizes cost no memory.
 constexpr std::size_t kFirstStep = std::size_t{64} << 10;
 constexpr auto kNowhere = std::numeric_limits<std::uint64_t>::max();
 /// Bytes of type and size.
@@ -147,8 +146,7 @@ Status EntryReader::read(std::uint64_t offset, FileEntry& entry) {
   return known ? Status::ok : Status::unsupported_feature;
 }
 
-/// Checks the part's tail, which no packet has, so that a packet with a damaged type is not
-/// skipped.
+/// Checks the part's tail, which no packet has, so that no packet with a damaged type is skipped.
 Status EntryReader::pass_index_part(FileEntry& entry) {
   Status status = pass(entry.size - kIndexTail);
   if (status != Status::ok) return status;

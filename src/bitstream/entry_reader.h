@@ -22,8 +22,7 @@ struct FileEntry {
   std::uint64_t size = 0;     ///< of the body
   std::uint64_t body_at = 0;  ///< offset of the body
   SeekEntry packet;           ///< EntryType::packet only
-  /// The body; for EntryType::packet the packet itself, for an index part nothing. Valid until the
-  /// next call.
+  /// The body; of a packet the packet itself, of an index part nothing. Valid until the next call.
   std::span<const std::byte> bytes;
 
   [[nodiscard]] bool is(EntryType wanted) const noexcept {

@@ -1,6 +1,5 @@
 // Index buffers (Stengel et al. §3.4): the delta-coded indices of an update's blocks. The encoder
-// takes the smallest of four modes, so that a buffer never exceeds one bit per block of the
-// texture.
+// takes the smallest of four modes, so a buffer never exceeds a bit per block of the texture.
 #pragma once
 
 #include <gicodec/status.h>

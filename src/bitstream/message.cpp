@@ -1,5 +1,4 @@
-// The bytes of messages (docs/protocol.md). Each message lists its fields once, for a Writer and a
-// Reader.
+// The bytes of messages (docs/protocol.md). A message lists its fields once, for Writer and Reader.
 #include <gicodec/protocol.h>
 
 #include "base/guard.h"

@@ -1,5 +1,4 @@
-// Fields of messages: a Writer and a Reader with the same calls, so that each message lists its
-// fields once.
+// Fields of messages: a Writer and a Reader with the same calls, so that messages list fields once.
 #pragma once
 
 #include <gicodec/protocol.h>

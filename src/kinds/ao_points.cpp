@@ -76,8 +76,7 @@ std::uint64_t entry_at(std::span<const std::byte> bytes, std::size_t place) noex
   return bits;
 }
 
-/// Dependencies of a bucket: the cells of its entries, which a client then has when it finds the
-/// entry.
+/// Dependencies of a bucket: the cells of its entries, which a client needs with it.
 std::size_t cells_of(std::span<const std::byte> bucket, std::span<std::uint32_t> out) {
   std::size_t count = 0;
   for (std::size_t place = 0; place < bucket.size() / 8; ++place) {

@@ -13,15 +13,14 @@ namespace gicodec {
 namespace {
 
 constexpr BlockShape kBrick{4, 4, 4};
-/// Blocks of maps, and of 3D textures, whose long rows native codes best.
+/// Blocks of maps, and of 3D textures, for which native codes long rows best.
 constexpr BlockShape kTile{8, 8, 1}, kRows{16, 4, 1};
 
 NamedTexture named(std::string name, const TextureDesc& desc, Preview preview = Preview::none) {
   return {std::move(name), desc, Threshold::components, preview};
 }
 
-/// Bricks along each axis of a 3D texture that is filled along x, then y, then z; at most `most`
-/// along each.
+/// Bricks along each axis, at most `most`, of a 3D texture that is filled along x, then y, then z.
 Grid filled(std::uint32_t bricks, std::uint32_t most) {
   const auto divided = [](std::uint32_t a, std::uint32_t b) { return a / b + (a % b != 0); };
   const std::uint32_t x = std::clamp(bricks, 1U, most);

@@ -22,7 +22,7 @@ constexpr std::array<Format, 4> kFormats{
     Format::E5B9G9R9_UFLOAT_PACK32, Format::B10G11R11_UFLOAT_PACK32, Format::R16G16B16A16_SFLOAT,
     Format::A2B10G10R10_UNORM_PACK32};
 
-/// `count` components of `bits` bits, called by a letter and a number, behind those that there are.
+/// Appends `count` components of `bits` bits, named by a letter and a number.
 void append_components(Record& record, char letter, std::uint8_t count, std::uint8_t bits,
                        ComponentKind kind) {
   for (std::uint8_t i = 0; i < count; ++i) {
@@ -46,8 +46,8 @@ Record blend_record() {
   return record;
 }
 
-/// The first page, how many, of how many bytes, the number of the picture, the pages from its
-/// keyframe on.
+/// A frame: first page, number of pages, bytes of the picture, the picture's number, and pages from
+/// its keyframe's first to its own last.
 Record frame_record() {
   using enum ComponentKind;
   return record_of({{"first", 32, uint},
@@ -63,8 +63,8 @@ Record hash_record() {
   return record;
 }
 
-/// A picture's own pages and those before them that it needs: `chain` of them, which end with its
-/// own. Beyond `out` they are only counted, from the picture's own back.
+/// Dependencies of a picture: its own pages and those before them back to its keyframe, `chain` in
+/// all, from its own back. Pages beyond `out` are only counted.
 std::size_t pages_of(std::span<const std::byte> frame, std::span<std::uint32_t> out) {
   std::array<std::uint32_t, 5> words{};
   std::memcpy(words.data(), frame.data(), sizeof words);
@@ -75,7 +75,7 @@ std::size_t pages_of(std::span<const std::byte> frame, std::span<std::uint32_t> 
   return count;
 }
 
-/// A texture of the map's tiles; the map may end within them.
+/// A texture of the map's tiles; the map may end within the last ones.
 TextureDesc tiled(const Record& record, const IrradianceMapDesc& desc) {
   TextureDesc map;
   map.record = record;
@@ -88,8 +88,8 @@ TextureDesc tiled(const Record& record, const IrradianceMapDesc& desc) {
   return map;
 }
 
-/// What is told of the texels that masks cover.
-TextureGroup covered(const char* coverage, NamedTexture texels) {
+/// The bundled textures of masks and of the texels that they cover.
+BlockSet covered(const char* coverage, NamedTexture texels) {
   texels.desc.presence = Presence::mask;
   TextureDesc masks = texels.desc;
   masks.record = mask_record();
@@ -189,7 +189,7 @@ VolumeDesc make(const IrradianceMapDesc& desc) {
   return volume;
 }
 
-/// What the textures say; make() tells whether that is all.
+/// The description that the textures suggest; the caller checks it by make().
 IrradianceMapDesc guess(const VolumeDesc& volume) {
   IrradianceMapDesc desc;
   const auto texture = [&](std::size_t group, std::size_t place) -> TextureDesc {

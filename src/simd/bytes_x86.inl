@@ -1,4 +1,4 @@
-// Bytes of 32 lanes, for sets whose masks are bytes. The set defines RegB, kByteRegs, table16() and
+// Bytes of 32 lanes, for sets with masks of bytes, which define RegB, kByteRegs, table16() and
 // shuffle().
 
 #define GICODEC_EACH8 GICODEC_UNROLL for (int i = 0; i < kByteRegs; ++i)

@@ -1,6 +1,6 @@
 // Interleaved triples of bytes ↔ three planes, 16 samples at a time, for sets with
-// shuffle_bytes(register, control): 16 bytes by index, 0 where the control is above 127. Byte16 is
-// the register.
+// shuffle_bytes(register, control): 16 bytes by index, 0 for controls above 127. Byte16 is the
+// register.
 
 struct Shuffle3 {
   alignas(16) std::uint8_t control[3][3][16];  ///< [to][from][place]

@@ -28,8 +28,7 @@
 namespace gicodec {
 
 inline constexpr unsigned kLanes = 32;
-/// Entropy coders' 32-bit states stay at kStateLow or above: refill() and spill() move 16-bit
-/// words.
+/// Entropy coders' 32-bit states stay at kStateLow or above: refill() and spill() move words.
 inline constexpr std::uint32_t kStateLow = 1U << 16;
 
 /// A table of 16 bytes, the first of which is 0.

@@ -100,8 +100,7 @@ GICODEC_INLINE B8 lookup16(const std::uint8_t (&table)[16], B8 index) {
 GICODEC_INLINE B8 lookup64(const std::uint8_t (&table)[64], B8 index) {
   return lookup_lanes(table, index);
 }
-/// Looks up one of four tables of 16 by `quarter`; the masks are its lanes that are 1, 2, and 3 or
-/// above.
+/// Looks up one of four tables of 16 by `quarter`; the masks are lanes where it is 1, 2, above 2.
 GICODEC_INLINE B8 lookup_quarter(const std::uint8_t (&table)[64], B8 index, B8 quarter, M8, M8,
                                  M8) {
   GICODEC_EACH8 index.v[i] += quarter.v[i] << std::uint8_t{4};

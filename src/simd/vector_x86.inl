@@ -114,8 +114,7 @@ GICODEC_INLINE U32 shift_right(U32 a) {
 }
 
 /// Look-ups go lane by lane: hardware gathers are no faster, and much slower on many machines.
-/// Entries go straight into registers, since a vector load would wait for all preceding scalar
-/// stores.
+/// Entries go straight into registers, since a vector load would wait for scalar stores.
 template <typename Find>
 GICODEC_INLINE U32 collect(const Find& find) {
   constexpr int kQuads = static_cast<int>(sizeof(Reg) / 16);

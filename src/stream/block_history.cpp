@@ -171,8 +171,7 @@ void BlockHistory::make_room(std::size_t blocks) {
   const std::size_t before = holders_.size();
   free_.resize(before + blocks);
   std::size_t found = 0;
-  // Skips kNothing, whose count may overflow. Branch-free, because holders are in no predictable
-  // order.
+  // Skips kNothing, whose count may overflow. Branch-free: holders have no order.
   for (std::size_t id = kNothing + 1; id < before; ++id) {
     free_[found] = static_cast<BlockId>(id);
     found += holders_[id] == 0 ? 1 : 0;

@@ -19,8 +19,7 @@
 
 namespace gicodec {
 
-// With Use::server, any number of threads may read, hold and release between two calls of
-// publish().
+// With Use::server, threads may read, hold and release between two calls of publish().
 
 /// A number for contents of a block, which do not change as long as they are held.
 using BlockId = std::uint32_t;
@@ -39,8 +38,7 @@ class BlockHistory {
   [[nodiscard]] bool lossy() const noexcept { return !quantiser_.exact(); }
 
   /// Makes the contents of `blocks` (ascending, unique) in a view current; unchanged blocks keep
-  /// their number. `presence`: of every block of the texture. Throws bad_alloc; then nothing has
-  /// changed.
+  /// their number. `presence`: of all blocks. Throws bad_alloc; then nothing has changed.
   void publish(const CheckedView<const std::byte>& view, std::span<const std::uint32_t> blocks,
                std::span<const std::byte> presence = {});
   /// Undoes the last publish(). Precondition: nothing holds what it made current.

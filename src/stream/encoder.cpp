@@ -102,9 +102,8 @@ Status Encoder::State::encode(const ConstTextureView& texture, Selection selecti
   } published{&history};
   if (selection.kind() == Selection::Kind::changed) keep_changed(keyframe);
 
-  // From here on a stateful backend may change its state, so after a failure only a keyframe can
-  // follow.
-  if (backend_encoder->is_stateful()) keyframe_wanted = true;
+  // A stateful backend may change from here on, so after a failure only a keyframe can follow.
+  if (backend_encoder->remembers()) keyframe_wanted = true;
   status = stream.write(keyframe ? UpdateStream::From::keyframe : UpdateStream::From::sent, blocks,
                         *backend_encoder, writer, written);
   if (status != Status::ok) return status;

@@ -46,12 +46,10 @@ struct GuardBandMemory {
 /// Appends the section for `stale`. Precondition: not empty, each block among context.blocks.
 Status write_guard_band_section(const GuardBandContext& context, const StaleBands& stale,
                                 GuardBandMemory& memory, std::vector<std::byte>& out);
-/// Checks a section without the update's blocks. Takes time and memory in proportion to the
-/// section.
+/// Checks a section without the update's blocks. Time and memory are in proportion to it.
 Status check_guard_band_section(const TextureDesc& desc, std::uint32_t blocks,
                                 std::span<const std::byte> section) noexcept;
-/// Reads the section of an update of these blocks into `differences`. Accepts bands that turn out
-/// to be regular.
+/// Reads the section of an update of these blocks. Accepts bands that turn out to be regular.
 Status read_guard_band_section(const TextureDesc& desc, std::span<const std::uint32_t> update,
                                std::span<const std::byte> section, GuardBandMemory& memory,
                                StaleBands& differences);

@@ -34,8 +34,7 @@ class Mirror {
                  : std::span<const std::byte>();
   }
 
-  /// Allocates memory for irregular bands, if there are any. Throws bad_alloc; then nothing has
-  /// changed.
+  /// Allocates memory for irregular bands, if any. Throws bad_alloc; then nothing has changed.
   void make_room(const StaleBands& stale);
   /// Replaces some blocks. `presence`: theirs, unless it is Presence::all. `stale`: their irregular
   /// bands. In a keyframe every other block becomes zero and not received. Then writes blocks that

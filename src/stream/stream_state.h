@@ -42,7 +42,7 @@ class StreamState {
   }
   /// Notes that these blocks stand elsewhere from now on.
   void set_moved(std::span<const std::uint32_t> blocks) noexcept;
-  /// Releases all contents, and no block counts as moved.
+  /// Releases all contents; moved() stays.
   void clear() noexcept;
 
   PacketChain chain;

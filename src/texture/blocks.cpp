@@ -40,7 +40,7 @@ void walk_runs(const TextureDesc& desc, const CheckedView<Byte>& view,
   }
 }
 
-/// Visits the rows of a block within the texture: visit(bytes in the texture, offset in the block,
+/// Visits a block's rows within the texture: visit(bytes of the texture, offset in the block,
 /// size).
 template <typename Byte, typename Visit>
 void walk_rows(const TextureDesc& desc, const CheckedView<Byte>& view, std::uint32_t block,

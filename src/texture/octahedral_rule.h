@@ -1,6 +1,6 @@
 // The core texel that each texel of a guard band copies. The octahedral map's edges fold onto
 // themselves: a row or column of the guard band is its neighbour mirrored, a corner the opposite
-// corner.
+// one.
 #pragma once
 
 namespace gicodec {

@@ -1,5 +1,4 @@
-// Presence: which records of a block exist, by counts and masks (FORMAT.md, "Records, blocks,
-// textures").
+// Presence: which records of a block exist (FORMAT.md, "Records, blocks, textures").
 #pragma once
 
 #include <gicodec/texture.h>

@@ -1,5 +1,4 @@
-// A texture view checked against its description: all records of all blocks lie within the caller's
-// memory.
+// A texture view checked against its description: all records lie within the caller's memory.
 #pragma once
 
 #include <gicodec/texture.h>

@@ -9,8 +9,7 @@
 
 namespace gicodec {
 
-/// A Record for kernels: without functions, which would be compiled for the kernel's instruction
-/// set.
+/// A Record for kernels: without functions, which would be compiled for the instruction set.
 struct RecordLayout {
   const Component* component;
   unsigned count, bytes;

@@ -57,8 +57,7 @@ class ContainerInput {
   }
   /// The selected textures with packets in the frame, ascending.
   [[nodiscard]] std::vector<std::size_t> arrived() const;
-  /// A texture after next_frame(), laid out as StoredTexture::info. Several threads may call it at
-  /// once.
+  /// A texture after next_frame(), laid out as StoredTexture::info. Callable by several threads.
   [[nodiscard]] std::vector<std::byte> texels(std::size_t texture) const;
   /// The same, updating `texels` that equal the texture before the frame.
   void follow(std::size_t texture, std::span<std::byte> texels) const;
@@ -76,8 +75,7 @@ class ContainerInput {
   /// The first and the last frame of next_frame(), if any.
   [[nodiscard]] std::optional<std::uint64_t> first_frame() const noexcept { return first_frame_; }
   [[nodiscard]] std::optional<std::uint64_t> last_frame() const noexcept { return last_frame_; }
-  /// "it holds frames 0-7", of the selected textures, for messages about a missing frame. Reads to
-  /// the end.
+  /// "it holds frames 0-7", of the selected textures, for messages. Reads to the end.
   [[nodiscard]] std::string frames_there();
   /// "x.gic: frame 3, texture vis", with the region if the volume has several.
   [[nodiscard]] std::string where(std::uint64_t frame, TextureRegion part) const;
@@ -148,8 +146,7 @@ void require_whole(ContainerInput& input);
                                   bool allowed);
 /// True if all textures of a volume can become dumps.
 [[nodiscard]] bool has_dumps(const ContainerInput& input, std::size_t volume);
-/// The command that recovers the readable part of a damaged container or one that was cut off, in
-/// words.
+/// The command that recovers the readable part of a damaged or cut off container, in words.
 [[nodiscard]] std::string recovery(const ContainerInput& input);
 
 /// Throws Error of Exit::bad_input with a hint if dumps of two selected textures would have the

@@ -47,7 +47,7 @@ void set_files(StoredTexture& texture, ImageKind kind) {
   std::erase_if(attributes, remove);
   if (find_attribute(attributes, kTimeAttribute) == nullptr) texture.times.reset();
   for (FrameAttribute& change : texture.changes) {
-    // Without an entry the frame would get the first frame's attribute.
+    // An empty entry, since the frame would otherwise get the first frame's attribute.
     if (remove(change.attribute)) change.attribute = {change.attribute.name, "", ""};
   }
   for (const std::string& name : unsaid) {

@@ -55,8 +55,7 @@ struct StoredTexture {
   [[nodiscard]] std::string file_name(std::uint64_t frame) const;
 };
 
-/// Extension of the files that a sequence decodes to: its own, or EXR for images that tools only
-/// read.
+/// Extension of the files that a sequence decodes to: its own, or EXR for images only read.
 [[nodiscard]] std::string written_extension(const Sequence& sequence);
 
 /// Reads the headers of all files of a sequence; throws if one does not fit the first.

@@ -58,8 +58,8 @@ struct ChannelLayout {
   std::array<SampleType, 4> types{};
   std::array<std::string, 4> names{};  ///< in the file; empty: the component's letter
   bool alpha = true;  ///< false: the image lacks a channel for the format's A component
-  /// False: the format has a shared exponent, and the image holds values as HALF or FLOAT instead
-  /// of mantissas.
+  /// False: the format has a shared exponent, and the image holds values, HALF or FLOAT, not
+  /// mantissas.
   bool exponent = true;
   friend bool operator==(const ChannelLayout& left, const ChannelLayout& right) {
     const auto count = left.alpha && left.exponent ? 4 : 3;

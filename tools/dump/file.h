@@ -60,8 +60,7 @@ void keep_standard_numbers() noexcept;
 void finish_standard_output();
 
 /// Writes a temporary file beside `path` and renames it on commit(); without commit() nothing
-/// remains. Devices and pipes are written directly; "-" is standard output. Failures throw Error of
-/// Exit::io.
+/// remains. Writes devices and pipes directly; "-" is standard output. Throws Error of Exit::io.
 class AtomicFile {
  public:
   enum class Temporary : std::uint8_t {
@@ -105,12 +104,10 @@ void check_report(const std::string& path, bool (*is_report)(std::string_view he
 /// Writes a whole file by AtomicFile.
 void write_file(const std::string& path, std::span<const std::byte> bytes,
                 Existing existing = Existing::refuse);
-/// Makes a directory and its parents. Throws Error of Exit::io if that fails or `path` is something
-/// else.
+/// Makes a directory and its parents. Throws Error of Exit::io on failure.
 void make_directory(const std::string& path);
 
-/// make_directory() for results. The destructor removes the directory if this object made it and it
-/// is empty.
+/// make_directory() for results. The destructor removes an empty directory that it made.
 class OutputDirectory {
  public:
   explicit OutputDirectory(std::string path);

@@ -26,8 +26,7 @@ struct FoundChannel {
 /// What a file's header gives besides attributes.
 struct FoundImage {
   Grid texels;  ///< width, height and slices
-  /// Channels of an image; its slices lie below each other, so texels.z is 1. Empty for a texture
-  /// file.
+  /// Channels of an image; its slices lie below each other, so texels.z is 1. Texture files: empty.
   std::vector<FoundChannel> channels;
   std::optional<Format> format;  ///< of a texture file, if known
   std::string format_name;       ///< the file's name for it

@@ -11,8 +11,7 @@ namespace gicodec::tools {
 
 /// typeSize: bytes that a big-endian machine swaps together.
 [[nodiscard]] std::uint32_t ktx2_type_size(const Record& record) noexcept;
-/// The data format descriptor of a format: a size and one basic block. Precondition: the record has
-/// a format.
+/// The data format descriptor of a format: a size and one basic block. Not for UNDEFINED.
 [[nodiscard]] std::vector<std::byte> ktx2_descriptor(const Record& record);
 
 }  // namespace gicodec::tools

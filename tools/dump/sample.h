@@ -67,8 +67,7 @@ enum class SampleType : std::uint8_t { uint32, half, float32 };
 }
 
 /// True if a channel of that type can hold every code of the component. Mantissas and shared
-/// exponents only fit UINT, since they mean nothing alone; so do integers, of which two may stand
-/// for one value.
+/// exponents only fit UINT, since they mean nothing alone; so do integers, which may share a value.
 [[nodiscard]] constexpr bool can_hold(SampleType type, const Component& component,
                                       const Record& record) noexcept {
   if (type == SampleType::uint32) return true;

@@ -14,8 +14,8 @@ namespace gicodec::tools {
 /// it is, so the function is idempotent.
 [[nodiscard]] std::string printable(std::string_view text);
 
-/// printable(), cut in the middle to about 2,000 bytes: a message begins with the error and ends
-/// with the hint.
+/// printable(), cut in the middle to about 2,000 bytes: messages begin with the error, end with the
+/// hint.
 [[nodiscard]] std::string message(std::string_view text);
 
 /// Text for JSON: escapes bytes that are not UTF-8 as \xHH.

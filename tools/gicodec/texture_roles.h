@@ -12,8 +12,7 @@
 
 namespace gicodec::tools {
 
-/// By texture: true if its blocks are single records (states of probes), beside textures with
-/// larger blocks.
+/// By texture: true if its blocks are single records (states of probes), beside larger blocks.
 [[nodiscard]] std::vector<bool> are_states(std::span<const TextureDesc> textures);
 
 /// By texture of a volume with `textures` textures: false for one with Threshold::exact, and for

@@ -50,8 +50,8 @@ struct VerifyOptions {
   DecoderFlags decoder;
 };
 
-/// Findings so far. Equal files are only counted, unless `keep_all`, so that memory does not grow
-/// with frames.
+/// Findings so far. Equal files are only counted, unless `keep_all`, so memory does not grow with
+/// frames.
 struct Report {
   bool keep_all = false;
   std::vector<Sequence> sequences;  ///< dumps to compare with

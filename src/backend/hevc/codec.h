@@ -1,5 +1,4 @@
-// HEVC encoders and decoders without delay: one picture in, one out. Each hides one third-party
-// library.
+// HEVC encoders and decoders without delay: one picture in, one out. Each hides a library.
 #pragma once
 
 #include "backend/hevc/access_unit.h"
@@ -48,8 +47,7 @@ class PictureDecoder {
 [[nodiscard]] Result<std::unique_ptr<PictureEncoder>> open_x265(const PictureFormat& format,
                                                                 const CoderSettings& settings);
 /// An FFmpeg encoder by name. backend_unavailable if FFmpeg has no HEVC encoder of that name, or it
-/// cannot code the format or be opened on this machine. The caller must check that its output is
-/// lossless.
+/// cannot code the format or be opened on this machine. Its output may be lossy.
 [[nodiscard]] Result<std::unique_ptr<PictureEncoder>> open_ffmpeg_encoder(
     const std::string& name, const PictureFormat& format, const CoderSettings& settings);
 

@@ -24,8 +24,8 @@ template <typename T>
 using AvOwner = std::unique_ptr<T, FreeAv>;
 
 /// A context's offset of log levels. It silences the context's messages without changing the
-/// process-wide log level and callback, which are the application's. FFmpeg looks at the low 8 bits
-/// of a level.
+/// process-wide log level and callback, which are the application's. FFmpeg reads 8 bits of a
+/// level.
 inline constexpr int kSilent = 128;
 
 /// FFmpeg's format of a Picture's samples.

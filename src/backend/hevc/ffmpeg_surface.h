@@ -7,8 +7,7 @@
 namespace gicodec::hevc {
 
 /// Sets context.pix_fmt and, for an encoder that takes only device frames, opens the device.
-/// Returns the pixel format of frames in memory; AV_PIX_FMT_NONE if the encoder cannot take such
-/// pictures.
+/// Returns the pixel format of frames in memory; AV_PIX_FMT_NONE if there is none.
 [[nodiscard]] AVPixelFormat choose_surface(const AVCodec& codec, const PictureFormat& format,
                                            AVCodecContext& context);
 /// A copy of `frame` on the device of `context`; null on failure.

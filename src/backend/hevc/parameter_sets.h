@@ -40,8 +40,7 @@ struct ParameterSets {
 [[nodiscard]] bool check_sps(std::span<const std::byte> payload, const PictureFormat& expected,
                              ParameterSets& sets) noexcept;
 [[nodiscard]] bool check_pps(std::span<const std::byte> payload, ParameterSets& sets) noexcept;
-/// Checks a slice header up to the weights of inter prediction, which some encoders write out of
-/// range.
+/// Checks a slice header up to the weights of inter prediction, which may be out of range.
 [[nodiscard]] bool check_slice(std::span<const std::byte> payload, bool idr, bool first,
                                const ParameterSets& sets) noexcept;
 

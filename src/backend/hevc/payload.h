@@ -39,8 +39,7 @@ void write_payload(const PayloadHead& head, std::span<const std::byte> alpha_sec
 /// Errors: truncated, corrupt, unsupported_version, unsupported_feature.
 [[nodiscard]] Result<Payload> read_payload(std::span<const std::byte> bytes) noexcept;
 
-/// Codes the alpha of 10-bit texels: sets head.alpha and returns the section, empty if alpha is
-/// constant.
+/// Codes the alpha of 10-bit texels: sets head.alpha and returns the section, empty if constant.
 [[nodiscard]] Result<std::vector<std::byte>> write_alpha(std::span<const std::byte> texels,
                                                          PayloadHead& head);
 /// The inverse. Precondition: the texels' alpha bits are zero.

@@ -72,8 +72,7 @@ struct FrameShape {
 [[nodiscard]] std::uint8_t size_class_of(const TextureDesc& desc, std::size_t blocks) noexcept;
 [[nodiscard]] std::size_t raster_bytes(const TextureDesc& desc, const FrameShape& shape) noexcept;
 
-/// Copies the blocks of `places`, which `blocks` holds one after another, into their tiles, and
-/// back.
+/// Copies blocks, one after another in `blocks`, into the tiles of `places`, and back.
 void blocks_to_raster(const TextureDesc& desc, const FrameShape& shape,
                       std::span<const std::uint32_t> places, std::span<const std::byte> blocks,
                       std::span<std::byte> raster) noexcept;

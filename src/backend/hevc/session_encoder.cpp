@@ -130,8 +130,7 @@ Status SessionEncoder::encode_update(const EncodeJob& job, std::vector<std::byte
   return out.size() - before <= bound(job.blocks.size()) ? Status::ok : Status::backend_failed;
 }
 
-// Encodes the picture. Falls back to the next encoder, with an IDR picture, until one's output is
-// right.
+// Encodes the picture. Falls back to the next encoder, with an IDR picture, until one is right.
 Status SessionEncoder::encode_picture(bool idr) {
   for (;;) {
     const Status status = encode_once(idr);
