@@ -89,7 +89,7 @@ TextureDesc tiled(const Record& record, const IrradianceMapDesc& desc) {
 }
 
 /// The bundled textures of masks and of the texels that they cover.
-BlockSet covered(const char* coverage, NamedTexture texels) {
+TextureGroup covered(const char* coverage, NamedTexture texels) {
   texels.desc.presence = Presence::mask;
   TextureDesc masks = texels.desc;
   masks.record = mask_record();

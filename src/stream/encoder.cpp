@@ -103,7 +103,7 @@ Status Encoder::State::encode(const ConstTextureView& texture, Selection selecti
   if (selection.kind() == Selection::Kind::changed) keep_changed(keyframe);
 
   // A stateful backend may change from here on, so after a failure only a keyframe can follow.
-  if (backend_encoder->remembers()) keyframe_wanted = true;
+  if (backend_encoder->is_stateful()) keyframe_wanted = true;
   status = stream.write(keyframe ? UpdateStream::From::keyframe : UpdateStream::From::sent, blocks,
                         *backend_encoder, writer, written);
   if (status != Status::ok) return status;
