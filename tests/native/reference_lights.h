@@ -1,4 +1,5 @@
-// What the models of vertices and voxels share in the reference decoder (docs/native/light.md): whether there is light, predictors, colors.
+// What the models of vertices and voxels share in the reference decoder (docs/native/light.md):
+// whether there is light, predictors, colors.
 #pragma once
 
 #include "native/reference_light_predictors.h"

@@ -82,7 +82,8 @@ class Records {
         const Number d = !here.known || !similar.is || must ? 0
                          : similar.changed ? 2 + std::min(7U, width_of(similar.residual[e]))
                                            : 1;
-        const Number first = must ? 0 : top_of(here.previous[e], bits(e), 4), second = must ? 0 : h % 4;
+        const Number first = must ? 0 : top_of(here.previous[e], bits(e), 4),
+                     second = must ? 0 : h % 4;
         const Number third = must ? 64 : std::min<Number>(at, 63);
         here.changed = models_.flag(
             known, {{H({4, known, d, must ? 1 : 0}), first},

@@ -1,6 +1,7 @@
 // Causal neighbourhood of a texel, prediction and contexts: the same in both directions.
 
-/// Offsets of the neighbours of a texel in arrays [texel][lane] (docs/native.md, "Neighbourhood and contexts").
+/// Offsets of the neighbours of a texel in arrays [texel][lane] (docs/native.md, "Neighbourhood and
+/// contexts").
 struct Around {
   std::ptrdiff_t w, n, nw, ne;  ///< all to the same texel where a neighbour is missing
   bool first;                   ///< there is none

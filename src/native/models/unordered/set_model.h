@@ -1,5 +1,5 @@
-// Blocks that are sets (docs/native/unordered.md): places by bisection, which codes how many records
-// are on the lower side, other components by those of records around.
+// Blocks that are sets (docs/native/unordered.md): places by bisection, which codes how many
+// records are on the lower side, other components by those of records around.
 #pragma once
 
 #include "native/mixed/value_model.h"
