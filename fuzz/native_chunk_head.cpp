@@ -2,7 +2,7 @@
 // byte chooses the format.
 #include "input.h"
 
-#include "native/chunk_head.h"
+#include "native/frame/chunk_head.h"
 
 #include <algorithm>
 

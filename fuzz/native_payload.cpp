@@ -4,7 +4,7 @@
 #include "payload.h"
 
 #include "base/bytes.h"
-#include "native/payload.h"
+#include "native/frame/payload.h"
 
 namespace {
 

@@ -2,7 +2,7 @@
 // set, with memory that stay from update to update as in a session or fresh ones.
 #include "mutate.h"
 
-#include "native/payload.h"
+#include "native/frame/payload.h"
 #include "quantise/set_order.h"
 #include "texture/presence.h"
 

@@ -4,7 +4,7 @@
 
 #include <gicodec/isa.h>
 
-#include "native/kernels.h"
+#include "native/planes/kernels.h"
 #include "texture/block_kernels.h"
 #include "transform/byte_plane_kernels.h"
 #include "transform/yuv444_kernels.h"

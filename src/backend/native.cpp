@@ -2,7 +2,7 @@
 
 #include "base/guard.h"
 #include "base/parallel.h"
-#include "native/payload.h"
+#include "native/frame/payload.h"
 
 #include <utility>
 

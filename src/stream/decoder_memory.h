@@ -5,7 +5,7 @@
 #include <gicodec/texture.h>
 
 #include "native/models/models.h"
-#include "native/planes.h"
+#include "native/planes/planes.h"
 #include "texture/guard_band.h"
 #include "texture/presence.h"
 

@@ -5,7 +5,7 @@
 #include "bitstream/description.h"
 #include "bitstream/packet.h"
 #include "container_support.h"
-#include "native/payload.h"
+#include "native/frame/payload.h"
 
 #include <cstring>
 #include <filesystem>

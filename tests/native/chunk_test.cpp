@@ -1,5 +1,5 @@
 // Chunks: every probe once, neighbours in earlier groups, the same for any subset.
-#include "native/chunk.h"
+#include "native/frame/chunk.h"
 #include "support.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // Updates of made-up textures for the native codec's tests.
 #pragma once
 
-#include "native/payload.h"
+#include "native/frame/payload.h"
 #include "support.h"
 
 namespace gicodec::test {

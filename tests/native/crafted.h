@@ -2,8 +2,8 @@
 // fault.
 #pragma once
 
-#include "native/chunk_head.h"
 #include "native/content.h"
+#include "native/frame/chunk_head.h"
 
 #include <initializer_list>
 

@@ -1,7 +1,7 @@
 // Damaged and hostile payloads: an error or other texels, never anything else, on every instruction
 // set, and the same verdict everywhere.
-#include "native/chunk_head.h"
 #include "native/content.h"
+#include "native/frame/chunk_head.h"
 #include "native/reference_decoder.h"
 #include "native/vector_content.h"
 #include "native/voxel_content.h"

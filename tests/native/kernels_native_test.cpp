@@ -1,7 +1,7 @@
 // The stages of the kernels: each with its inverse, and equal on every instruction set.
-#include "native/adaptation.h"
-#include "native/distribution_fit.h"
-#include "native/planes.h"
+#include "native/planes/adaptation.h"
+#include "native/planes/distribution_fit.h"
+#include "native/planes/planes.h"
 #include "support.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-// Adaptive chunks for the reference decoder, from docs/native.md, section 9, alone.
+// Adaptive chunks for the reference decoder, from docs/native.md, section 9, and docs/native/
+// alone.
 #pragma once
 
 #include <gicodec/texture.h>

@@ -28,18 +28,23 @@ Number stretch(Number p) {
 
 }  // namespace
 
-BitModels::Mixed BitModels::mixed(const Mixer& mixer, const std::vector<F>& by) {
-  auto& weights = mixers_[mixer];
-  const auto n = static_cast<Number>(by.size());
-  if (weights.empty()) weights.assign(by.size(), 5 * 65536 / (4 * n));
-  std::vector<Counter*> counters;
-  std::vector<Number> s;
+BitModels::Counter& BitModels::counter(const F& f) {
+  Bucket*& bucket = buckets_[f.h * 0xC2B2AE35U >> 18];
+  if (bucket == nullptr) bucket = &used_.emplace_back();
+  return (*bucket)[static_cast<std::size_t>(f.i)];
+}
+
+BitModels::Mixed BitModels::mixed(const Mixer& mixer, std::span<const F> by) {
+  const auto [entry, added] = mixers_.try_emplace(mixer);
+  auto& weights = entry->second;
+  if (added) weights.fill(5 * 65536 / (4 * static_cast<Number>(by.size())));
+  std::array<Counter*, kMaxInputs> counters{};
+  std::array<Number, kMaxInputs> s{};
   Number x = 0;
   for (std::size_t i = 0; i < by.size(); ++i) {
-    const Word bucket = by[i].h * 0xC2B2AE35U >> 18;
-    counters.push_back(&counters_[bucket * 16 + static_cast<std::size_t>(by[i].i)]);
-    s.push_back(stretch(counters.back()->p));
-    x += s.back() * weights[i];
+    counters[i] = &counter(by[i]);
+    s[i] = stretch(counters[i]->p);
+    x += s[i] * weights[i];
   }
   const Number q = squash(brought_into(x >> 16, -3071, 3071));
   const bool bit = source_.bit(static_cast<Word>(brought_into(q, 24, 65512)));
@@ -47,7 +52,8 @@ BitModels::Mixed BitModels::mixed(const Mixer& mixer, const std::vector<F>& by) 
     const Number step = (s[i] * ((bit ? 65536 : 0) - q) * 18 + (1 << 19)) >> 20;
     weights[i] = brought_into(weights[i] + step, -(1 << 19), 1 << 19);
     Counter& c = *counters[i];
-    c.p += (((bit ? (1 << 22) - 1 : 0) - c.p) * (131072 / (2 * c.n + 3))) >> 16;
+    const Number to = bit ? (1 << 22) - 1 : 0;
+    c.p += static_cast<std::int32_t>(((to - c.p) * (131072 / (2 * c.n + 3))) >> 16);
     if (c.n < 127) ++c.n;
   }
   return {bit, q};
@@ -64,9 +70,10 @@ Word BitModels::value(unsigned channel, const std::array<Word, 5>& hashes, unsig
     } else {
       Word m = 1;
       Number t = 0;
+      std::array<F, 5> by{};
+      for (std::size_t i = 0; i < 5; ++i) by[i].h = H({hashes[i], static_cast<Number>(y)});
       for (unsigned b = 0; b < w; ++b) {
-        std::vector<F> by;
-        for (const Word h : hashes) by.push_back({H({h, static_cast<Number>(y)}), m});
+        for (F& f : by) f.i = m;
         const auto [bit, q] = mixed({'v', channel, done + b}, by);
         t += bit ? q - 32768 : 32768 - q;
         m = m << 1 | (bit ? 1U : 0U);
@@ -81,12 +88,12 @@ Word BitModels::value(unsigned channel, const std::array<Word, 5>& hashes, unsig
 }
 
 Number BitModels::number(unsigned channel, const std::array<Word, 5>& hashes,
-                         const std::vector<F>& sign) {
+                         std::initializer_list<F> sign) {
   unsigned width = 0;
   while (width < 32) {
-    std::vector<F> by;
-    for (const Word h : hashes) by.push_back({H({h, width - width % 16}), width % 16});
-    if (!flag({'w', channel, width}, by)) break;
+    std::array<F, 5> by{};
+    for (std::size_t i = 0; i < 5; ++i) by[i] = {H({hashes[i], width - width % 16}), width % 16};
+    if (!mixed({'w', channel, width}, by).bit) break;
     ++width;
   }
   if (width == 0) return 0;

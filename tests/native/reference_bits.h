@@ -4,11 +4,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <initializer_list>
 #include <map>
 #include <span>
 #include <tuple>
-#include <unordered_map>
 #include <vector>
 
 namespace gicodec::reference {
@@ -106,23 +106,29 @@ class BitModels {
     Number q;
   };
   using Mixer = std::tuple<char, Number, Number>;
-  Mixed mixed(const Mixer& mixer, const std::vector<F>& by);
-  bool flag(const Mixer& mixer, const std::vector<F>& by) { return mixed(mixer, by).bit; }
-  bool flag(Number mixer, const std::vector<F>& by) { return mixed({'f', mixer, 0}, by).bit; }
+  Mixed mixed(const Mixer& mixer, std::span<const F> by);
+  bool flag(const Mixer& mixer, std::initializer_list<F> by) {
+    return mixed(mixer, {by.begin(), by.size()}).bit;
+  }
+  bool flag(Number mixer, std::initializer_list<F> by) { return flag({'f', mixer, 0}, by); }
   Word value(unsigned channel, const std::array<Word, 5>& hashes, unsigned bits);
-  Number number(unsigned channel, const std::array<Word, 5>& hashes, const std::vector<F>& sign);
+  Number number(unsigned channel, const std::array<Word, 5>& hashes, std::initializer_list<F> sign);
   BitSource& source() { return source_; }
 
  private:
+  static constexpr std::size_t kMaxInputs = 5;
   struct Counter {
-    Number p = 1 << 21, n = 0;
+    std::int32_t p = 1 << 21, n = 0;
   };
+  using Bucket = std::array<Counter, 16>;
+  Counter& counter(const F& f);
   struct Noise {
     Number gain = 8192, rest = 0;
   };
   BitSource& source_;
-  std::unordered_map<std::size_t, Counter> counters_;  ///< those in use
-  std::map<Mixer, std::vector<Number>> mixers_;
+  std::vector<Bucket*> buckets_ = std::vector<Bucket*>(1 << 14);  ///< null: not in use
+  std::deque<Bucket> used_;
+  std::map<Mixer, std::array<Number, kMaxInputs>> mixers_;
   std::map<std::pair<unsigned, unsigned>, Noise> noise_;
 };
 

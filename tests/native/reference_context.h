@@ -32,13 +32,22 @@ inline Around around(int columns, int i, int j) {
   const int n = at - columns;
   return {i > 0 ? at - 1 : n, n, i > 0 ? n - 1 : n, i + 1 < columns ? n + 1 : n};
 }
+/// For every record of a block the last one before it that exists, or −1.
+inline std::vector<int> last_existing(const std::vector<bool>& exists) {
+  std::vector<int> last(exists.size(), -1);
+  for (std::size_t t = 1; t < exists.size(); ++t) {
+    last[t] = exists[t - 1] ? static_cast<int>(t - 1) : last[t - 1];
+  }
+  return last;
+}
 /// Neighbours that do not exist are the last record before that does.
-inline Around around(int columns, int i, int j, const std::vector<bool>& exists) {
+inline Around around(int columns, int i, int j, const std::vector<bool>& exists,
+                     const std::vector<int>& last) {
   Around a = around(columns, i, j);
-  int last = j * columns + i - 1;
-  while (last >= 0 && !exists[static_cast<std::size_t>(last)]) --last;
   for (int* t : {&a.w, &a.n, &a.nw, &a.ne}) {
-    if (*t >= 0 && !exists[static_cast<std::size_t>(*t)]) *t = last;
+    if (*t >= 0 && !exists[static_cast<std::size_t>(*t)]) {
+      *t = last[static_cast<std::size_t>(j * columns + i)];
+    }
   }
   return a;
 }
@@ -63,14 +72,14 @@ inline int operate(const Mode& m, const std::vector<int>& d, const Around& a, bo
 
 /// round() of section 7.
 inline int rounded(int a, int b) { return (sign(a) * sign(b) + 16384) >> 15; }
-struct Look {
+struct Local {
   int energy = 0, sign = 0;
   bool flip = false;
 };
-inline Look look(const std::vector<int>& e, const Around& a) {
+inline Local local_context(const std::vector<int>& e, const Around& a) {
   const int w = at(e, a.w), n = at(e, a.n);
   const int near = capped(std::abs(w) + std::abs(n));
-  Look l;
+  Local l;
   l.energy = capped(capped(near + near) + capped(std::abs(at(e, a.nw)) + std::abs(at(e, a.ne))));
   l.flip = w < 0 || (w == 0 && n < 0);
   if ((w != 0) != (n != 0)) l.sign = 1;

@@ -3,6 +3,7 @@
 #include "native/reference_adaptive.h"
 #include "native/reference_entropy.h"
 #include "native/reference_model.h"
+#include "native/reference_packing.h"
 
 #include <algorithm>
 #include <array>
@@ -12,49 +13,13 @@
 namespace gicodec::reference {
 namespace {
 
-struct Plane {
-  unsigned offset, stored;  ///< within the record
-  bool low = false;
-  unsigned bits = stored;  ///< of numbers of steps
-  int step = 1;
-};
-
-std::vector<Plane> planes_of(const Record& record) {
-  std::vector<Component> components(record.used().begin(), record.used().end());
-  if (components.size() >= 3) std::swap(components[0], components[1]);
-  std::vector<Plane> planes;
-  for (const auto& c : components) {
-    if (c.bits > 16) {
-      planes.push_back({c.offset + 16U, c.bits - 16U});
-      planes.push_back({c.offset, 16, true});
-    } else {
-      planes.push_back({c.offset, c.bits});
-    }
-  }
-  return planes;
-}
-
-unsigned bits_at(const std::byte* record, unsigned offset, unsigned bits) {
-  unsigned value = 0;
-  for (unsigned b = 0; b < bits; ++b) {
-    const auto byte = static_cast<unsigned>(record[(offset + b) / 8]);
-    value |= (byte >> (offset + b) % 8 & 1) << b;
-  }
-  return value;
-}
-void put_bits(std::byte* record, unsigned offset, unsigned bits, unsigned value) {
-  for (unsigned b = 0; b < bits; ++b) {
-    if ((value >> b & 1) != 0) record[(offset + b) / 8] |= std::byte(1 << (offset + b) % 8);
-  }
-}
-
 class Decoder {
  public:
   Decoder(const TextureDesc& desc, std::span<const std::uint32_t> blocks,
           std::span<const std::byte> mirror, std::span<const std::uint8_t> received,
           std::span<const std::byte> presence, bool fresh, std::span<const std::byte> held_presence)
       : desc_(desc),
-        planes_(planes_of(desc.record)),
+        planes_(desc),
         blocks_(blocks),
         mirror_(mirror),
         received_(received),
@@ -75,7 +40,7 @@ class Decoder {
     } else if (!read_box(in)) {
       return {};
     }
-    if ((parts & 4) != 0 && !read_steps(in)) return {};
+    if ((parts & 4) != 0 && !planes_.read_steps(in)) return {};
     std::map<std::array<std::uint32_t, 3>, std::vector<std::uint32_t>> chunks;  // by z, y, x
     for (const auto block : blocks_) {
       const auto c = coordinates(block);
@@ -102,16 +67,14 @@ class Decoder {
     std::vector<std::byte> out;
     for (const auto block : blocks_) {
       const auto raw = raw_.find(block);
-      const auto records = raw != raw_.end() ? raw->second : pack(done_.at(block));
+      const auto records = raw != raw_.end() ? raw->second : planes_.pack(done_.at(block));
       out.insert(out.end(), records.begin(), records.end());
     }
     return out;
   }
 
  private:
-  [[nodiscard]] bool pairs() const {
-    return desc_.record.format == Format::R16G16_SFLOAT && desc_.presence == Presence::all;
-  }
+  [[nodiscard]] bool pairs() const { return planes_.pairs(); }
   [[nodiscard]] bool has_neighbours() const {
     return desc_.model == Model::stacked || desc_.model == Model::continuous ||
            desc_.model == Model::hemispheres;
@@ -132,20 +95,6 @@ class Decoder {
     }
     return volume <= 1U << 20 && in.u16() == 0 && !in.failed();
   }
-  bool read_steps(Bytes& in) {
-    bool some = false;
-    for (Plane& plane : planes_) {
-      plane.step = static_cast<int>(in.u16());
-      const int largest = (1 << plane.stored) - 1;
-      const bool power = (plane.step & (plane.step - 1)) == 0;
-      if (plane.step < 1 || plane.step > largest || (pairs() && !power)) return false;
-      some = some || plane.step > 1;
-      if (pairs()) continue;
-      for (plane.bits = 1; (largest + plane.step - 1) / plane.step >> plane.bits != 0;)
-        ++plane.bits;
-    }
-    return some && (planes_.size() % 2 == 0 || in.u16() == 0) && !in.failed();
-  }
   void choose_box() {
     const auto volume = [&] { return std::uint64_t{box_[0]} * box_[1] * box_[2]; };
     std::ranges::copy(std::array{desc_.grid.x, desc_.grid.y, desc_.grid.z}, box_);
@@ -165,34 +114,24 @@ class Decoder {
     }
   }
 
-  [[nodiscard]] int value_of(const Plane& plane, int steps) const {
-    return pairs() ? steps * plane.step & 0xFFFF
-                   : std::min(steps * plane.step, (1 << plane.stored) - 1);
-  }
-  [[nodiscard]] int steps_of(const Plane& plane, int value) const {
-    if (!pairs()) return (value + plane.step - 1) / plane.step;
-    const int is_signed = value < 0x8000 ? value : value - 0x10000;
-    const int below = is_signed < 0 ? (plane.step - 1 - is_signed) / plane.step : 0;
-    return (is_signed < 0 ? -below : is_signed / plane.step) & 0xFFFF;
-  }
-  [[nodiscard]] std::size_t said_bytes() const {
+  [[nodiscard]] std::size_t presence_bytes() const {
     return desc_.presence == Presence::count  ? 2
            : desc_.presence == Presence::mask ? (records_ + 7) / 8
                                               : 8 + (records_ / 6 + 7) / 8;
   }
   /// The presence of a block of the update.
-  [[nodiscard]] std::span<const std::byte> said_of(std::uint32_t block) const {
+  [[nodiscard]] std::span<const std::byte> presence_of(std::uint32_t block) const {
     const auto place =
         static_cast<std::size_t>(std::ranges::lower_bound(blocks_, block) - blocks_.begin());
-    return presence_.subspan(place * said_bytes(), said_bytes());
+    return presence_.subspan(place * presence_bytes(), presence_bytes());
   }
   /// Which records of a block of the update exist.
   [[nodiscard]] std::vector<bool> exists(std::uint32_t block) const {
     std::vector<bool> all(records_, true);
     if (desc_.presence == Presence::all) return all;
     const bool counted = desc_.presence == Presence::count;
-    const auto said_of_block = said_of(block);
-    const std::byte* const said = said_of_block.data();
+    const auto presence = presence_of(block);
+    const std::byte* const said = presence.data();
     if (desc_.presence == Presence::brick) {
       for (unsigned r = 0; r < records_; ++r) all[r] = bits_at(said + 8, r / 6, 1) != 0;
       return all;
@@ -200,31 +139,6 @@ class Decoder {
     const unsigned count = counted ? bits_at(said, 0, 16) : 0;
     for (unsigned r = 0; r < records_; ++r) all[r] = counted ? r < count : bits_at(said, r, 1) != 0;
     return all;
-  }
-
-  Values unpack(const std::byte* records) const {
-    Values v(planes_.size(), std::vector<int>(records_));
-    for (std::size_t t = 0; t < records_; ++t) {
-      const std::byte* record = records + t * desc_.record.bytes;
-      for (std::size_t p = 0; p < planes_.size(); ++p) {
-        v[p][t] = static_cast<int>(bits_at(record, planes_[p].offset, planes_[p].stored));
-      }
-      if (pairs()) v[1][t] = (v[1][t] - 2 * v[0][t]) & 0xFFFF;
-      for (std::size_t p = 0; p < planes_.size(); ++p) v[p][t] = steps_of(planes_[p], v[p][t]);
-    }
-    return v;
-  }
-  std::vector<std::byte> pack(const Values& v) const {
-    std::vector<std::byte> out(block_bytes_);
-    for (std::size_t t = 0; t < records_; ++t) {
-      for (std::size_t p = 0; p < planes_.size(); ++p) {
-        int value = value_of(planes_[p], v[p][t]);
-        if (pairs() && p == 1) value = (value + 2 * value_of(planes_[0], v[0][t])) & 0xFFFF;
-        put_bits(out.data() + t * desc_.record.bytes, planes_[p].offset, planes_[p].stored,
-                 static_cast<unsigned>(value));
-      }
-    }
-    return out;
   }
 
   /// The block at −1 along an axis, if it lies in the same box.
@@ -238,7 +152,7 @@ class Decoder {
                             bool flat) const {
     Surroundings s;
     s.exists = exists(block);
-    if (update()) s.previous = unpack(mirror_.data() + block * block_bytes_);
+    if (update()) s.previous = planes_.unpack(mirror_.data() + block * block_bytes_);
     if (flat && !pairs()) return s;
     for (unsigned axis = 0; axis < 3; ++axis) {
       const auto n = neighbour(block, axis);
@@ -246,8 +160,8 @@ class Decoder {
       const bool listed = std::ranges::binary_search(blocks, *n), coded = listed && !flat;
       const bool held = !mirror_.empty() && received_[*n] != 0 && !(fresh_ && listed);
       if (!coded && !held) continue;
-      s.now[axis] = coded ? done_.at(*n) : unpack(mirror_.data() + *n * block_bytes_);
-      if (update()) s.before[axis] = unpack(mirror_.data() + *n * block_bytes_);
+      s.now[axis] = coded ? done_.at(*n) : planes_.unpack(mirror_.data() + *n * block_bytes_);
+      if (update()) s.before[axis] = planes_.unpack(mirror_.data() + *n * block_bytes_);
     }
     return s;
   }
@@ -287,7 +201,7 @@ class Decoder {
     head.columns = desc_.block.x;
     head.rows = static_cast<unsigned>(records_ / desc_.block.x);
     head.mantissas = desc_.record.format == Format::E5B9G9R9_UFLOAT_PACK32;
-    for (const auto& plane : planes_) {
+    for (const auto& plane : planes_.all()) {
       head.bits.push_back(plane.bits);
       head.low.push_back(plane.low);
     }
@@ -328,10 +242,10 @@ class Decoder {
         one.previous.assign(previous.begin(), previous.end());
       }
       if (desc_.presence == Presence::brick) {
-        const auto said = said_of(block);
+        const auto said = presence_of(block);
         one.presence.assign(said.begin(), said.end());
         if (update() && !held_presence_.empty() && received_[block] != 0) {
-          const auto held = held_presence_.subspan(block * said_bytes(), said_bytes());
+          const auto held = held_presence_.subspan(block * presence_bytes(), presence_bytes());
           one.previous_presence.assign(held.begin(), held.end());
         }
       }
@@ -369,7 +283,7 @@ class Decoder {
     if (mirror_.empty() || held_presence_.empty()) return held;
     for (std::uint32_t block = 0; block < received_.size(); ++block) {
       if (received_[block] == 0 || std::ranges::binary_search(blocks_, block)) continue;
-      const auto said = held_presence_.subspan(block * said_bytes(), said_bytes());
+      const auto said = held_presence_.subspan(block * presence_bytes(), presence_bytes());
       const auto records = mirror_.subspan(block * block_bytes_, block_bytes_);
       held.push_back({{said.begin(), said.end()}, {records.begin(), records.end()}});
     }
@@ -403,7 +317,7 @@ class Decoder {
       for (std::size_t p = 0; p < planes_.size(); ++p) {
         head.coded.push_back((coded >> p & 1) != 0);
         head.constant.push_back(head.coded[p] ? 0 : static_cast<int>(in.u16()));
-        if (head.constant[p] >> planes_[p].bits != 0) return false;
+        if (head.constant[p] >> planes_.all()[p].bits != 0) return false;
         if (head.coded[p]) used[head.place(p)] = true;
       }
     }
@@ -419,7 +333,7 @@ class Decoder {
   }
 
   const TextureDesc& desc_;
-  std::vector<Plane> planes_;
+  RecordPlanes planes_;
   std::span<const std::uint32_t> blocks_;
   std::span<const std::byte> mirror_;
   std::span<const std::uint8_t> received_;

@@ -1,5 +1,5 @@
-// What the models of vertices and voxels share in the reference decoder (docs/native.md, sections
-// 9.5 and 9.6): whether there is light, predictors, colors.
+// What the models of vertices and voxels share in the reference decoder (docs/native/light.md):
+// whether there is light, predictors, colors.
 #pragma once
 
 #include "native/reference_light_predictors.h"

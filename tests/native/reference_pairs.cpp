@@ -73,7 +73,7 @@ PlanePrediction predict(const Head& head, const Surroundings& s, const PairBlock
       const std::size_t k = 8 * p + m;
       f.key_reference[k] = source(kPairKey[p][m], s, p, t, 0, head.frequent[p]);
       f.key_prediction[k] = word(f.key_reference[k] + operate(kPairKey[p][m], b.key_d[k], a, true));
-      int left = look(b.key_e[k], a).energy;
+      int left = local_context(b.key_e[k], a).energy;
       if (i >= 2 && j > 0) left = capped(left + std::abs(b.key_e[k][t - 2]));
       if (j >= 2) left = capped(left + std::abs(b.key_e[k][t - 2 * head.columns]));
       left /= 2;
@@ -165,7 +165,7 @@ std::optional<std::vector<Values>> decode_pairs(const Head& head,
         std::vector<int> context(lanes, Lanes::kInactive);
         for (std::size_t l = 0; l < lanes; ++l) {
           if (symbol[l] != 2) continue;
-          const Look k = look(state[l].e[p], a);
+          const Local k = local_context(state[l].e[p], a);
           const int c = std::abs(first_residual[l]);
           const int size = p == 1
                                ? magnitude(capped(k.energy + capped(c + capped(c + c))) >> 1, true)
@@ -177,7 +177,7 @@ std::optional<std::vector<Values>> decode_pairs(const Head& head,
         const auto u = coder.tokens(head.tables.planes[p], context);
         for (std::size_t l = 0; l < lanes; ++l) {
           if (symbol[l] != 2) continue;
-          const int r = residual(u[l], look(state[l].e[p], a).flip);
+          const int r = residual(u[l], local_context(state[l].e[p], a).flip);
           if (p == 0) first_residual[l] = r;
           value[l][p] = word(predicted[l].prediction[p] + r);
         }

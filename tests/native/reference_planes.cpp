@@ -33,8 +33,8 @@ int operate_scaled(const Mode& m, const std::vector<int>& d, const std::vector<i
 int sgn(int x) { return (x > 0) - (x < 0); }
 /// What the texels of a block repeat.
 struct Repeats {
-  explicit Repeats(std::size_t texels) : rank_candidates(texels), equal_to(texels) {}
-  std::vector<const Values*> rank_candidates;  ///< null: none
+  explicit Repeats(std::size_t texels) : taken(texels), equal_to(texels) {}
+  std::vector<const Values*> taken;  ///< null: none
   std::vector<std::array<bool, 4>> equal_to;
 };
 
@@ -45,7 +45,7 @@ bool read_repeats(const Head& head, const std::vector<Surroundings>& blocks, std
   const int columns = static_cast<int>(head.columns);
   const Around a = around(columns, static_cast<int>(t) % columns, static_cast<int>(t) / columns);
   std::vector<std::array<const Values*, 4>> candidate(blocks.size());
-  std::vector<std::array<std::size_t, 2>> rank_candidates(blocks.size());
+  std::vector<std::array<std::size_t, 2>> ranked(blocks.size());
   std::vector<int> context;
   const auto equal_to = [&](const Values* x, const Values* y) {
     for (std::size_t p = 0; p < head.bits.size(); ++p) {
@@ -65,14 +65,14 @@ bool read_repeats(const Head& head, const std::vector<Surroundings>& blocks, std
       score[k] = 4 * m(a.w) + 3 * m(a.n) + 2 * m(a.ne) + m(a.nw);
     }
     const auto best = static_cast<std::size_t>(std::max_element(score, score + 4) - score);
-    rank_candidates[l] = {best, best};
+    ranked[l] = {best, best};
     int votes = -1, second = -1;
     for (std::size_t k = 0; k < 4; ++k) {
       if (equal_to(candidate[l][k], candidate[l][best])) {
         ++votes;
       } else if (score[k] > second) {
         second = score[k];
-        rank_candidates[l][1] = k;
+        ranked[l][1] = k;
       }
     }
     context.push_back(5 * score[best] + votes);
@@ -81,8 +81,8 @@ bool read_repeats(const Head& head, const std::vector<Surroundings>& blocks, std
   if (!coder.valid()) return false;
   for (std::size_t l = 0; l < blocks.size(); ++l) {
     if (symbol[l] == 2) continue;
-    const Values* taken = candidate[l][rank_candidates[l][symbol[l]]];
-    repeats[l].rank_candidates[t] = taken;
+    const Values* taken = candidate[l][ranked[l][symbol[l]]];
+    repeats[l].taken[t] = taken;
     for (std::size_t k = 0; k < 4; ++k)
       repeats[l].equal_to[t][k] = equal_to(candidate[l][k], taken);
   }
@@ -111,6 +111,12 @@ std::optional<std::vector<Values>> decode_planes(const Head& head,
   const auto first_low =
       static_cast<std::size_t>(std::ranges::find(head.low, true) - head.low.begin());
   std::vector<Repeats> repeats(lanes, Repeats(texels));
+  std::vector<std::vector<int>> existing;
+  std::vector<std::size_t> first;
+  for (const Surroundings& block : blocks) {
+    existing.push_back(last_existing(block.exists));
+    first.push_back(first_record(block));
+  }
   const std::size_t last = planes - 1;
   const bool scaled = head.mantissas && head.coded[last];
   for (std::size_t turn = 0; turn < texels + planes; ++turn) {
@@ -128,7 +134,8 @@ std::optional<std::vector<Values>> decode_planes(const Head& head,
       for (std::size_t l = 0; l < lanes; ++l) {
         const Mode& m = head.update ? kPlaneUpdate[(*modes)[l]] : kPlaneKey[(*modes)[l]];
         const int half = head.mantissas && !exponent ? 0 : 1 << (head.bits[p] - 1);
-        const Around a = around(static_cast<int>(head.columns), i, j, blocks[l].exists);
+        const Around a =
+            around(static_cast<int>(head.columns), i, j, blocks[l].exists, existing[l]);
         reference.push_back(source(m, blocks[l], p, t, half, half));
         int op = mantissa ? 0 : operate(m, d[l][p], a, deep);
         if (mantissa) {
@@ -137,14 +144,14 @@ std::optional<std::vector<Values>> decode_planes(const Head& head,
           reference[l] = rounded(32 * reference[l], 16 * scale(other, own));
           op = operate_scaled(m, d[l][p], value[l][last], a, own);
         }
-        Look look_l = look(e[l][p], a);
-        int sign_part = 16 * look_l.sign;
-        const bool at_first = t == first_record(blocks[l]);
+        Local local = local_context(e[l][p], a);
+        int sign_part = 16 * local.sign;
+        const bool at_first = t == first[l];
         int size = 15;
         if (p == 0 || exponent) {
-          if (!at_first) size = magnitude(look_l.energy, deep);
+          if (!at_first) size = magnitude(local.energy, deep);
         } else if (head.low[p]) {
-          const int energy = look_l.energy >> 4, h = std::min(std::abs(e[l][p - 1][t]), 3);
+          const int energy = local.energy >> 4, h = std::min(std::abs(e[l][p - 1][t]), 3);
           const int f = p == first_low ? 0 : std::abs(e[l][first_low][t]);
           if (!at_first)
             size = magnitude(capped(energy - (energy >> 2) + 1024 * h + (f >> 3)), deep);
@@ -153,20 +160,20 @@ std::optional<std::vector<Values>> decode_planes(const Head& head,
           op += sign(m.a * e0 + 2) >> 2;
           const int c =
               p == second ? std::abs(e0) : capped(capped(std::abs(e0) + std::abs(e1)) + 1) >> 1;
-          const int energy = at_first ? capped(capped(2 * c) * 2) : look_l.energy;
+          const int energy = at_first ? capped(capped(2 * c) * 2) : local.energy;
           size = magnitude(capped(energy - (energy >> 2) + capped(2 * c)), deep);
           if (head.update && m.context_class == 3) {
             const int votes = p == second ? 2 * sgn(e0) : sgn(e0) + sgn(e1);
             const int both = 3 * votes + sgn(sign(at(e[l][p], a.w) + at(e[l][p], a.n)));
-            look_l.flip = both < 0;
+            local.flip = both < 0;
             sign_part = 8 * std::abs(both);
             size = std::min(size, 7);
           }
         }
         const int sum = reference[l] + op;
         prediction.push_back(mantissa ? std::clamp(sign(sum), 0, (1 << head.bits[p]) - 1) : sum);
-        flip.push_back(look_l.flip);
-        const bool coded = blocks[l].exists[t] && repeats[l].rank_candidates[t] == nullptr;
+        flip.push_back(local.flip);
+        const bool coded = blocks[l].exists[t] && repeats[l].taken[t] == nullptr;
         context.push_back(coded ? 64 * m.context_class + sign_part + size : Lanes::kInactive);
       }
       const auto u = coder.tokens(head.tables.planes[head.place(p)], context);
@@ -174,9 +181,8 @@ std::optional<std::vector<Values>> decode_planes(const Head& head,
       for (std::size_t l = 0; l < lanes; ++l) {
         const int modulus = 1 << head.bits[p];
         int r = residual(u[l], flip[l]) & (modulus - 1);
-        if (const Values* rank_candidates = repeats[l].rank_candidates[t];
-            rank_candidates != nullptr) {
-          r = ((*rank_candidates)[p][t] - prediction[l]) & (modulus - 1);
+        if (const Values* taken = repeats[l].taken[t]; taken != nullptr) {
+          r = ((*taken)[p][t] - prediction[l]) & (modulus - 1);
         }
         if (r >= modulus / 2) r -= modulus;
         e[l][p][t] = r;

@@ -1,36 +1,8 @@
 #include "native/reference_records.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace gicodec::reference {
-
-std::vector<std::byte> packed(const Record& record, const std::vector<Components>& records) {
-  std::vector<std::byte> out(records.size() * record.bytes);
-  for (std::size_t r = 0; r < records.size(); ++r) {
-    for (unsigned c = 0; c < record.count; ++c) {
-      const Component& component = record.components[c];
-      for (unsigned b = 0; b < component.bits; ++b) {
-        const unsigned at = component.offset + b;
-        if ((records[r][c] >> b & 1) != 0)
-          out[r * record.bytes + at / 8] |= std::byte(1U << at % 8);
-      }
-    }
-  }
-  return out;
-}
-
-Components unpacked(const Record& record, const std::byte* bytes) {
-  Components values(record.count, 0);
-  for (unsigned c = 0; c < record.count; ++c) {
-    const Component& component = record.components[c];
-    for (unsigned b = 0; b < component.bits; ++b) {
-      const unsigned at = component.offset + b;
-      values[c] |= Number{static_cast<unsigned>(bytes[at / 8]) >> at % 8 & 1} << b;
-    }
-  }
-  return values;
-}
 
 namespace {
 
@@ -110,7 +82,8 @@ class Records {
         const Number d = !here.known || !similar.is || must ? 0
                          : similar.changed ? 2 + std::min(7U, width_of(similar.residual[e]))
                                            : 1;
-        const Number first = must ? 0 : top4(here.previous[e], e), second = must ? 0 : h % 4;
+        const Number first = must ? 0 : top_of(here.previous[e], bits(e), 4),
+                     second = must ? 0 : h % 4;
         const Number third = must ? 64 : std::min<Number>(at, 63);
         here.changed = models_.flag(
             known, {{H({4, known, d, must ? 1 : 0}), first},
@@ -161,9 +134,6 @@ class Records {
       if (kind(c) == ComponentKind::snorm) key = (16 * key + previous[c] % 16) % 256;
     }
     return static_cast<std::size_t>(key);
-  }
-  [[nodiscard]] Number top4(Number value, unsigned c) const {
-    return bits(c) > 4 ? value >> (bits(c) - 4) : value;
   }
   [[nodiscard]] unsigned bits(unsigned c) const { return record_.components[c].bits; }
   [[nodiscard]] ComponentKind kind(unsigned c) const { return record_.components[c].kind; }
@@ -285,7 +255,7 @@ class Records {
     const Number w = similar.is ? 1 + sign(r) : 0;
     const Number gap = similar.is ? 1 + (x >= 0 ? 4 : 0) + std::min<Number>(3, width_of(x) / 2) : 0;
     const Number y = models_.flag(80 + c, {{H({400 + c, w}), 4 * sign(l) + sign(w_->residual[c])},
-                                           {H({416 + c, top4(p, c)}), w},
+                                           {H({416 + c, top_of(p, b, 4)}), w},
                                            {H({432 + c, w, gap}), std::min(7U, width_of(r))}})
                          ? 1
                          : 0;

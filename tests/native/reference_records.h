@@ -1,4 +1,4 @@
-// Records of adaptive chunks for the reference decoder (docs/native.md, section 9.4).
+// Records of adaptive chunks for the reference decoder (docs/native/records.md).
 #pragma once
 
 #include "native/reference_adaptive.h"
@@ -12,8 +12,8 @@ namespace gicodec::reference {
 using Components = std::vector<Number>;  ///< values of a record
 
 [[nodiscard]] inline Number mask_of(unsigned bits) { return (Number{1} << bits) - 1; }
-[[nodiscard]] inline Number top_of(Number value, unsigned bits) {
-  return bits > 8 ? value >> (bits - 8) : value;
+[[nodiscard]] inline Number top_of(Number value, unsigned bits, unsigned n = 8) {
+  return bits > n ? value >> (bits - n) : value;
 }
 [[nodiscard]] inline Number with_sign(Number value, unsigned bits) {
   value &= mask_of(bits);

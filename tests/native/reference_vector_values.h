@@ -1,4 +1,4 @@
-// Codes and values of light for the reference decoder (docs/native.md, sections 9.5 and 9.6).
+// Codes and values of light for the reference decoder (docs/native/light.md).
 #pragma once
 
 #include "native/reference_records.h"

@@ -1,4 +1,4 @@
-// Vectors of adaptive chunks for the reference decoder (docs/native.md, section 9.5).
+// Vectors of adaptive chunks for the reference decoder (docs/native/hemispheres.md).
 #pragma once
 
 #include "native/reference_adaptive.h"

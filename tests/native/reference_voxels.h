@@ -1,4 +1,4 @@
-// Voxels of adaptive chunks for the reference decoder (docs/native.md, section 9.6).
+// Voxels of adaptive chunks for the reference decoder (docs/native/octree.md).
 #pragma once
 
 #include "native/reference_adaptive.h"

@@ -1,8 +1,8 @@
 // The tables: the published numbers, what is built from them, and fits of new distributions.
-#include "native/tables.h"
+#include "native/planes/tables.h"
 
-#include "native/distribution_fit.h"
-#include "native/table_data.h"
+#include "native/planes/distribution_fit.h"
+#include "native/planes/table_data.h"
 #include "support.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 #include "train/fit.h"
 
 #include "base/parallel.h"
-#include "native/distribution_fit.h"
+#include "native/planes/distribution_fit.h"
 #include "train/cluster.h"
 #include "train/prior.h"
 

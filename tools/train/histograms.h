@@ -1,8 +1,8 @@
 // Counts of coded values by context.
 #pragma once
 
-#include "native/kernels.h"
-#include "native/tables.h"
+#include "native/planes/kernels.h"
+#include "native/planes/tables.h"
 
 #include <array>
 #include <cstdint>

@@ -6,7 +6,7 @@
 
 namespace gicodec::train {
 
-/// The text of src/native/tables.txt (docs/native.md, "Tables").
+/// The text of src/native/planes/tables.txt (docs/native.md, "Tables").
 [[nodiscard]] std::string to_text(const Model& model);
 
 }  // namespace gicodec::train

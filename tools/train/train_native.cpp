@@ -12,7 +12,7 @@
 #include "dump/error.h"
 #include "dump/file.h"
 #include "dump/sequence.h"
-#include "native/payload.h"
+#include "native/frame/payload.h"
 #include "texture/blocks.h"
 #include "texture/view.h"
 

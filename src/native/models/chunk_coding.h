@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/binary_coder.h"
-#include "native/workspace.h"
+#include "native/frame/workspace.h"
 
 #include <span>
 

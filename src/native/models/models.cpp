@@ -1,6 +1,6 @@
 #include "native/models/models.h"
 
-#include "native/chunk_head.h"
+#include "native/frame/chunk_head.h"
 #include "native/models/chunk_coding.h"
 
 #include <algorithm>

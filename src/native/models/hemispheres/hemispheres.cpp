@@ -1,4 +1,4 @@
-// Vertices (docs/native.md, "Vertices").
+// Vertices (docs/native/hemispheres.md).
 #include "native/models/chunk_coding.h"
 #include "native/models/hemispheres/vertex_neighbours.h"
 #include "quantise/set_order.h"

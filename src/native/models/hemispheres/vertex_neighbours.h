@@ -1,4 +1,4 @@
-// Which vertices of a grid a vertex may be predicted from (docs/native.md, "Vertices").
+// Which vertices of a grid a vertex may be predicted from (docs/native/hemispheres.md).
 #pragma once
 
 #include "native/models/light/known_lights.h"

@@ -1,5 +1,4 @@
-// What is known around a vertex or a voxel when its light is coded (docs/native.md, "Vertices",
-// "Voxels").
+// What is known around a vertex or a voxel when its light is coded (docs/native/light.md).
 #pragma once
 
 #include <array>

@@ -1,10 +1,10 @@
-// Light over six hemispheres, at vertices and voxels (docs/native.md, "Vertices", "Voxels"): each
+// Light over six hemispheres, at vertices and voxels (docs/native/light.md): each
 // by those around, weighted by how similar their other hemispheres are; of vertices, the second of
 // two opposite ones also by what all pairs sum up to.
 #pragma once
 
+#include "native/mixed/value_model.h"
 #include "native/models/light/light_predictors.h"
-#include "native/value_model.h"
 
 namespace gicodec::native {
 

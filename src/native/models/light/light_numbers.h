@@ -1,8 +1,8 @@
-// Arithmetic of the light model (docs/native.md, "Vertices", "Voxels"): directions and colours of
+// Arithmetic of the light model (docs/native/light.md): directions and colours of
 // all encodings as whole numbers.
 #pragma once
 
-#include "native/record_numbers.h"
+#include "native/models/numbers.h"
 
 #include <gicodec/texture.h>
 

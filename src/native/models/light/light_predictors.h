@@ -1,5 +1,4 @@
-// Predictors of a light: its previous value and those around (docs/native.md, "Vertices",
-// "Voxels").
+// Predictors of a light: its previous value and those around (docs/native/light.md).
 #pragma once
 
 #include "native/models/light/known_lights.h"

@@ -1,4 +1,4 @@
-// Directions and colours of one hemisphere (docs/native.md, "Vertices").
+// Directions and colours of one hemisphere (docs/native/hemispheres.md, docs/native/light.md).
 #include "native/models/light/light_model.h"
 
 #include "base/binary_coder.h"

@@ -1,6 +1,6 @@
 #include "native/models/octree/bricks.h"
 
-#include "native/workspace.h"
+#include "native/frame/workspace.h"
 #include "quantise/set_order.h"
 #include "texture/texel.h"
 

@@ -1,4 +1,4 @@
-// Bricks of voxels by their places, and what is known around a voxel (docs/native.md, "Voxels").
+// Bricks of voxels by their places, and what is known around a voxel (docs/native/octree.md).
 #pragma once
 
 #include "base/memory.h"

@@ -1,4 +1,4 @@
-// Bricks of voxels (docs/native.md, "Voxels").
+// Bricks of voxels (docs/native/octree.md).
 #include "native/models/chunk_coding.h"
 #include "quantise/set_order.h"
 

@@ -1,9 +1,9 @@
-// Records of small blocks (docs/native.md, "Records"): what changed since the mirror and by how
+// Records of small blocks (docs/native/records.md): what changed since the mirror and by how
 // much, what is new by what stands before it.
 #pragma once
 
+#include "native/mixed/value_model.h"
 #include "native/models/records/similar_records.h"
-#include "native/value_model.h"
 
 #include <gicodec/texture.h>
 
@@ -43,9 +43,13 @@ class RecordModel {
   template <typename Coder>
   bool code_same(Coder& coder, const Seen& here, unsigned column, unsigned c, std::uint32_t pattern,
                  std::uint32_t value);
+
+  // Numbers (record_values.cpp).
   template <typename Coder>
   std::uint32_t code_number(Coder& coder, unsigned place, Seen& here, unsigned column,
                             std::uint32_t value);
+  [[nodiscard]] std::array<std::uint64_t, kPredictors> predictions(unsigned c, const Seen& here,
+                                                                   unsigned column) const;
 
   // Blocks of one row (record_rows.cpp).
   template <typename Coder>
@@ -67,9 +71,6 @@ class RecordModel {
     return std::uint64_t{values[c]} << (in_units(c) ? values[exponent_] : 0);
   }
   [[nodiscard]] bool in_units(unsigned c) const { return (mantissas_ >> c & 1) != 0; }
-  std::array<std::uint64_t, kPredictors> predictions(unsigned c, const Seen& here,
-                                                     unsigned column) const;
-
   ValueModel* values_ = nullptr;
   TextureDesc desc_;
   bool update_ = false, one_row_ = false;

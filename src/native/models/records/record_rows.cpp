@@ -1,7 +1,7 @@
 // The record model in blocks of one row, which have no rows above: by similar records and copies.
 #include "base/binary_coder.h"
+#include "native/models/numbers.h"
 #include "native/models/records/record_model.h"
-#include "native/record_numbers.h"
 
 namespace gicodec::native {
 namespace {

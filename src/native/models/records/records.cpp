@@ -1,4 +1,4 @@
-// Any blocks (docs/native.md, "Records").
+// Any blocks (docs/native/records.md).
 #include "native/models/chunk_coding.h"
 
 namespace gicodec::native {

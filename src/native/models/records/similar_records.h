@@ -1,4 +1,4 @@
-// The last change of records of the same direction (docs/native.md, "Records"): points of one
+// The last change of records of the same direction (docs/native/records.md): points of one
 // surface change in the same way.
 #pragma once
 

@@ -1,7 +1,7 @@
 #include "native/models/unordered/set_model.h"
 
 #include "base/binary_coder.h"
-#include "native/record_numbers.h"
+#include "native/models/numbers.h"
 
 #include <cstring>
 

@@ -1,8 +1,8 @@
-// Blocks that are sets (docs/native.md, "Sets"): places by bisection, which codes how many records
-// are on the lower side, other components by those of records around.
+// Blocks that are sets (docs/native/unordered.md): places by bisection, which codes how many
+// records are on the lower side, other components by those of records around.
 #pragma once
 
-#include "native/value_model.h"
+#include "native/mixed/value_model.h"
 #include "quantise/set_order.h"
 
 #include <gicodec/texture.h>

@@ -1,4 +1,4 @@
-// Updates of blocks that are sets (docs/native.md, "Sets"): the states of the records that the
+// Updates of blocks that are sets (docs/native/unordered.md): the states of the records that the
 // mirror has, by their places; new records are a set of their own.
 #pragma once
 

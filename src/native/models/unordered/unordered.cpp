@@ -1,4 +1,4 @@
-// Blocks that are sets (docs/native.md, "Sets").
+// Blocks that are sets (docs/native/unordered.md).
 #include "native/models/chunk_coding.h"
 
 #include <algorithm>

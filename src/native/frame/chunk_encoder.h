@@ -1,0 +1,22 @@
+#pragma once
+
+#include "native/frame/workspace.h"
+
+#include <functional>
+
+namespace gicodec::native {
+
+struct EncodeSettings {
+  bool strong = false;  ///< exact mode search and table choice
+  int set = -1;         ///< table set to use in all places, or the encoder's choice
+  unsigned lanes = 0;   ///< 0: the encoder's choice; more where enough_lanes() says so
+  /// Sees every group's steps, for training and statistics; called from the encoding threads.
+  std::function<void(const Step* begin, const Step* end)> observe;
+};
+
+/// Encodes the probes at `positions` of the update. `texels` are the whole update's.
+void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
+                  const BlockTable& texels, const EncodeSettings& settings, Workspace& w,
+                  std::vector<std::byte>& out);
+
+}  // namespace gicodec::native

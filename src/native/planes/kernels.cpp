@@ -1,0 +1,42 @@
+// The kernels of one instruction set (simd/dispatch.h).
+#include "native/planes/kernels.h"
+
+#include "simd/intrinsics.h"
+
+#include <bit>
+#include <cstring>
+
+namespace gicodec::native::GICODEC_ISA {
+namespace {
+
+#include GICODEC_VECTORS
+
+#include "native/planes/lookup.inl"
+
+#include "native/planes/entropy.inl"
+
+#include "native/planes/context.inl"
+
+#include "native/planes/pairs.inl"
+#include "native/planes/repeats.inl"
+
+#include "native/planes/shared.inl"
+
+#include "native/planes/planes.inl"
+
+#include "native/planes/estimate.inl"
+#include "native/planes/layout.inl"
+#include "native/planes/texels.inl"
+
+constexpr Kernels kKernels{unpack,       pack,          to_steps,     from_steps,  has_steps,
+                           to_lanes,     from_lanes,    model_planes, model_pairs, decode_planes,
+                           decode_pairs, decode_values, encode_steps, price_steps, cost};
+
+}  // namespace
+}  // namespace gicodec::native::GICODEC_ISA
+
+namespace gicodec {
+template <>
+constinit const native::Kernels TableOf<native::Kernels, Isa::GICODEC_ISA>::kernels =
+    native::GICODEC_ISA::kKernels;
+}  // namespace gicodec
