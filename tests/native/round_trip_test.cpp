@@ -43,7 +43,7 @@ Bytes decode(const test::UpdateCase& u, std::span<const std::byte> payload, unsi
 }
 
 void check_everything(test::UpdateCase u, native::PayloadSettings settings) {
-  SCOPED_TRACE(rc::toString(u.desc) + (u.fresh ? " fresh" : u.keyframe ? " keyframe" : " update"));
+  SCOPED_TRACE(rc::toString(u.desc) + (u.intra ? " intra" : u.keyframe ? " keyframe" : " update"));
   const Bytes payload = test::encode(u, settings, Isa::scalar);
   EXPECT_LE(payload.size(), native::payload_bound(u.desc, u.blocks.size()));
   static unsigned turn = 0;
@@ -60,14 +60,14 @@ void check_everything(test::UpdateCase u, native::PayloadSettings settings) {
     }
   }
   const auto expected = reference::decode(u.desc, u.blocks, u.mirror, u.received, payload,
-                                          u.presence, u.fresh, u.mirror_presence);
+                                          u.presence, u.intra, u.mirror_presence);
   ASSERT_TRUE(expected.has_value());
   EXPECT_EQ(*expected, u.records);
 }
 
 test::UpdateCase any_update(const TextureDesc& desc, test::Content content, std::uint32_t one_in,
                             std::uint64_t seed) {
-  if (seed % 4 == 0) return test::make_fresh(desc, content, one_in, seed);
+  if (seed % 4 == 0) return test::make_intra(desc, content, one_in, seed);
   return test::make_update(desc, content, seed % 4 == 1, one_in, seed);
 }
 
@@ -102,23 +102,23 @@ TEST(NativeRoundTrip, EveryFormatAndContent) {
 /// Probes that enter a volume are predicted from those that are there.
 TEST(NativeRoundTrip, FreshUpdatesCostLessThanKeyframes) {
   for (const auto& desc : {ddgi_irradiance({4, 8, 8}), ddgi_visibility({4, 8, 8})}) {
-    test::UpdateCase fresh = test::make_fresh(desc, test::Content::smooth, 1, 5);
+    test::UpdateCase intra = test::make_intra(desc, test::Content::smooth, 1, 5);
     const std::size_t size = block_bytes(desc);
     Bytes records;
-    std::erase_if(fresh.blocks, [&](std::uint32_t b) {
+    std::erase_if(intra.blocks, [&](std::uint32_t b) {
       if (b % 4 != 3) return true;
-      const auto block = std::span(fresh.records).subspan(b * size, size);
+      const auto block = std::span(intra.records).subspan(b * size, size);
       records.insert(records.end(), block.begin(), block.end());
       return false;
     });
-    fresh.records = std::move(records);
-    fresh.mirror = test::make_records(desc, test::Content::smooth, 0, 5);
-    fresh.received.assign(block_count(desc), 1);
-    check_everything(fresh, {});
-    test::UpdateCase keyframe = fresh;
-    keyframe.fresh = false;
+    intra.records = std::move(records);
+    intra.mirror = test::make_records(desc, test::Content::smooth, 0, 5);
+    intra.received.assign(block_count(desc), 1);
+    check_everything(intra, {});
+    test::UpdateCase keyframe = intra;
+    keyframe.intra = false;
     const auto bytes = [](const auto& u) { return test::encode(u, {}, best_isa()).size(); };
-    EXPECT_LT(bytes(fresh), bytes(keyframe));
+    EXPECT_LT(bytes(intra), bytes(keyframe));
   }
 }
 
@@ -388,8 +388,8 @@ TEST(NativeRoundTrip, VoxelsInSparsePackets) {
       std::vector<std::uint8_t> received(block_count(desc), 0);
       for (unsigned packet = 0; packet < 8; ++packet) {
         const auto now = test::make_voxels(desc, test::VoxelContent::crowded, packet, side);
-        const bool fresh = packet == 5;
-        test::UpdateCase u{desc, {}, {}, {}, {}, packet == 0 || fresh, {}, fresh};
+        const bool intra = packet == 5;
+        test::UpdateCase u{desc, {}, {}, {}, {}, packet == 0 || intra, {}, intra};
         for (std::uint32_t b = 0; b < block_count(desc); ++b) {
           if (!test::chance(random, 2)) continue;
           u.blocks.push_back(b);
