@@ -49,12 +49,12 @@ TEST(BlocksForFew, AreNotStarvedByPacketsForAll) {
 /// Looking for what to write takes longer than an update may, whatever is written.
 TEST(BlocksForFew, AreNotStarvedByLookingForThem) {
   constexpr double kMost = 0.2, kLooking = 0.3, kBlock = 1e-5;
-  const auto looked_at = static_cast<std::uint64_t>(64 * kLooking / kBlock);
+  const auto examined = static_cast<std::uint64_t>(64 * kLooking / kBlock);
   double limit = 1000;
   for (int i = 0; i < 100; ++i) {
     const auto few = static_cast<std::uint64_t>(limit);
     limit =
-        next_unicast_block_limit(limit, {few, few, looked_at}, kLooking + kBlock * limit, kMost);
+        next_unicast_block_limit(limit, {few, few, examined}, kLooking + kBlock * limit, kMost);
   }
   EXPECT_NEAR(limit, 0.15 * kMost / kBlock, 100);
 }
