@@ -83,7 +83,7 @@ std::vector<Packet> make_packets(const TextureDesc& desc, std::string_view backe
   return packets;
 }
 
-/// The packets of a session as fresh ones and as they are, in turn.
+/// The packets of a session as intra ones and as they are, in turn.
 void add_fresh(Corpus& corpus, const TextureDesc& desc, const std::vector<Packet>& packets) {
   for (const std::byte choice : {std::byte{0}, std::byte{3}}) {
     Bytes session;
@@ -92,11 +92,11 @@ void add_fresh(Corpus& corpus, const TextureDesc& desc, const std::vector<Packet
     for (std::size_t i = 0; i < packets.size(); ++i) {
       fuzz::put_part(packets[i], i % 3 == 1 ? 3 : 0, session);
     }
-    corpus.add("fresh", session);
+    corpus.add("intra", session);
   }
 }
 
-/// The packets of a session; a decoder that joins by a snapshot, with fresh updates.
+/// The packets of a session; a decoder that joins by a snapshot, with intra updates.
 void add_joining(Corpus& corpus, const TextureDesc& desc, const std::vector<Packet>& packets) {
   Bytes session;
   fuzz::put_desc(desc, session);

@@ -50,7 +50,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (int i = 0; i < 4 && !input.empty(); ++i) {
     Input part(input.part().bytes);
     const auto kind = part.byte();
-    const bool keyframe = (kind & 1) != 0, fresh = (kind & 5) == 5;
+    const bool keyframe = (kind & 1) != 0, intra = (kind & 5) == 5;
     const auto blocks = part.blocks(desc);
     Exact records(blocks.size() * block_bytes(desc));
     gather(desc, blocks, mirror.span(), records.span());
@@ -69,7 +69,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     Exact changed(mirror.span());
     scatter(desc, blocks, Exact(records.span().size(), 1).span(), changed.span());
     const MirrorView others{{changed.span().data(), block}, received.data(), existed};
-    const MirrorView known = fresh ? others : keyframe ? MirrorView{} : held;
+    const MirrorView known = intra ? others : keyframe ? MirrorView{} : held;
     const BlockTable table{records.span().data(), block};
     native::PayloadMemory unused;
     std::vector<std::byte> first;
@@ -79,7 +79,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                        .records = table,
                        .mirror = mirror_view,
                        .keyframe = keyframe,
-                       .intra = fresh,
+                       .intra = intra,
                        .presence = exists};
     };
     const auto decode_job = [&](const MirrorView& mirror_view, Exact& bytes, Exact& out) {
@@ -89,7 +89,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                        .mirror = mirror_view,
                        .records = out.span(),
                        .keyframe = keyframe,
-                       .intra = fresh,
+                       .intra = intra,
                        .presence = exists};
     };
     native::encode_payload(encode_job(known), settings, isas[0], unused, first);
@@ -109,7 +109,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     check(native::decode_payload(decode_job(known, payload, back), isas[0], unused) == Status::ok,
           "a new workspace decodes");
     check(same(back.span(), records.span()), "exactly");
-    if (keyframe && !fresh) {
+    if (keyframe && !intra) {
       std::ranges::fill(mirror.span(), std::byte{0});
       std::ranges::fill(received, std::uint8_t{0});
     }

@@ -137,10 +137,10 @@ UpdateCase make_update(const TextureDesc& desc, Content content, bool keyframe,
   return u;
 }
 
-UpdateCase make_fresh(const TextureDesc& desc, Content content, std::uint32_t one_in,
+UpdateCase make_intra(const TextureDesc& desc, Content content, std::uint32_t one_in,
                       std::uint64_t seed) {
   UpdateCase u = make_update(desc, content, false, one_in, seed);
-  u.keyframe = u.fresh = true;
+  u.keyframe = u.intra = true;
   const std::size_t size = block_bytes(desc);
   Random random(seed);
   for (const std::uint32_t block : u.blocks) {

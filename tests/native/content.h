@@ -24,7 +24,7 @@ struct UpdateCase {
   std::vector<std::uint8_t> received;  ///< blocks of the mirror; the others are zero in it
   bool keyframe = false;
   Bytes presence;  ///< of `blocks`; what does not exist is zero
-  bool fresh = false;
+  bool intra = false;
   Bytes mirror_presence = {};  ///< of bricks, of every block of the mirror
 
   [[nodiscard]] BlockTable table(const Bytes& of) const { return {of.data(), block_bytes(desc)}; }
@@ -39,7 +39,7 @@ struct UpdateCase {
             .records = table(records),
             .mirror = held(),
             .keyframe = keyframe,
-            .intra = fresh,
+            .intra = intra,
             .presence = presence};
   }
   [[nodiscard]] DecodeJob decode_job(std::span<const std::byte> payload,
@@ -50,7 +50,7 @@ struct UpdateCase {
             .mirror = held(),
             .records = out,
             .keyframe = keyframe,
-            .intra = fresh,
+            .intra = intra,
             .presence = presence};
   }
 };
@@ -59,8 +59,8 @@ void forget_some(UpdateCase& update, Random& random);
 /// About one in `one_in` of the blocks; of a mirror, some blocks or all were received.
 [[nodiscard]] UpdateCase make_update(const TextureDesc& desc, Content content, bool keyframe,
                                      std::uint32_t one_in, std::uint64_t seed);
-/// A fresh one: the mirror holds anything of its blocks.
-[[nodiscard]] UpdateCase make_fresh(const TextureDesc& desc, Content content, std::uint32_t one_in,
+/// An intra one: the mirror holds anything of its blocks.
+[[nodiscard]] UpdateCase make_intra(const TextureDesc& desc, Content content, std::uint32_t one_in,
                                     std::uint64_t seed);
 /// Puts the records of every block, which is a set, into the canonical order.
 void sort_sets(UpdateCase& update);

@@ -45,7 +45,7 @@ void expect_sound(const UpdateCase& u, const Bytes& payload) {
   EXPECT_EQ(decode(u, payload, out), Status::ok);
   EXPECT_EQ(out, u.records);
   const auto expected = reference::decode(u.desc, u.blocks, u.mirror, u.received, payload,
-                                          u.presence, u.fresh, u.mirror_presence);
+                                          u.presence, u.intra, u.mirror_presence);
   ASSERT_TRUE(expected.has_value());
   EXPECT_EQ(*expected, u.records);
 }
@@ -53,7 +53,7 @@ void expect_refused(const UpdateCase& u, const Bytes& payload, Status status) {
   Bytes out;
   EXPECT_EQ(decode(u, payload, out), status);
   EXPECT_FALSE(reference::decode(u.desc, u.blocks, u.mirror, u.received, payload, u.presence,
-                                 u.fresh, u.mirror_presence)
+                                 u.intra, u.mirror_presence)
                    .has_value());
 }
 void expect_refused_at_once(const UpdateCase& u, const Bytes& payload, Status status) {

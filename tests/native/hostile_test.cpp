@@ -41,7 +41,7 @@ void compare_all(const test::UpdateCase& u, std::span<const std::byte> payload) 
     EXPECT_EQ(o.records, first.records) << to_string(isa);
   }
   const auto expected = reference::decode(u.desc, u.blocks, u.mirror, u.received, payload,
-                                          u.presence, u.fresh, u.mirror_presence);
+                                          u.presence, u.intra, u.mirror_presence);
   EXPECT_EQ(expected.has_value(), first.status == Status::ok);
   if (expected && first.status == Status::ok) {
     EXPECT_EQ(*expected, first.records);
@@ -111,7 +111,7 @@ TEST(NativeHostile, NoPrefixPassesForTheWhole) {
       if (n % 4 != 0 && !test::everything()) continue;
       if (adaptive) compare_all(u, cut);
       EXPECT_TRUE(adaptive || !reference::decode(u.desc, u.blocks, u.mirror, u.received, cut,
-                                                 u.presence, u.fresh, u.mirror_presence)
+                                                 u.presence, u.intra, u.mirror_presence)
                                    .has_value());
     }
   }

@@ -17,14 +17,14 @@ class Decoder {
  public:
   Decoder(const TextureDesc& desc, std::span<const std::uint32_t> blocks,
           std::span<const std::byte> mirror, std::span<const std::uint8_t> received,
-          std::span<const std::byte> presence, bool fresh, std::span<const std::byte> held_presence)
+          std::span<const std::byte> presence, bool intra, std::span<const std::byte> held_presence)
       : desc_(desc),
         planes_(desc),
         blocks_(blocks),
         mirror_(mirror),
         received_(received),
         presence_(presence),
-        fresh_(fresh),
+        intra_(intra),
         held_presence_(held_presence),
         records_(std::size_t{desc.block.x} * desc.block.y * desc.block.z),
         block_bytes_(records_ * desc.record.bytes) {}
@@ -79,7 +79,7 @@ class Decoder {
     return desc_.model == Model::stacked || desc_.model == Model::continuous ||
            desc_.model == Model::hemispheres;
   }
-  [[nodiscard]] bool update() const { return !mirror_.empty() && !fresh_; }
+  [[nodiscard]] bool update() const { return !mirror_.empty() && !intra_; }
   [[nodiscard]] std::array<std::uint32_t, 3> coordinates(std::uint32_t block) const {
     return {block % desc_.grid.x, block / desc_.grid.x % desc_.grid.y,
             block / desc_.grid.x / desc_.grid.y};
@@ -158,7 +158,7 @@ class Decoder {
       const auto n = neighbour(block, axis);
       if (!n) continue;
       const bool listed = std::ranges::binary_search(blocks, *n), coded = listed && !flat;
-      const bool held = !mirror_.empty() && received_[*n] != 0 && !(fresh_ && listed);
+      const bool held = !mirror_.empty() && received_[*n] != 0 && !(intra_ && listed);
       if (!coded && !held) continue;
       s.now[axis] = coded ? done_.at(*n) : planes_.unpack(mirror_.data() + *n * block_bytes_);
       if (update()) s.before[axis] = planes_.unpack(mirror_.data() + *n * block_bytes_);
@@ -338,7 +338,7 @@ class Decoder {
   std::span<const std::byte> mirror_;
   std::span<const std::uint8_t> received_;
   std::span<const std::byte> presence_;
-  bool fresh_;
+  bool intra_;
   std::span<const std::byte> held_presence_;
   std::size_t records_, block_bytes_;
   std::uint32_t box_[3] = {};
@@ -353,9 +353,9 @@ std::optional<std::vector<std::byte>> decode(const TextureDesc& desc,
                                              std::span<const std::byte> mirror,
                                              std::span<const std::uint8_t> received,
                                              std::span<const std::byte> payload,
-                                             std::span<const std::byte> presence, bool fresh,
+                                             std::span<const std::byte> presence, bool intra,
                                              std::span<const std::byte> held_presence) {
-  return Decoder(desc, blocks, mirror, received, presence, fresh, held_presence).payload(payload);
+  return Decoder(desc, blocks, mirror, received, presence, intra, held_presence).payload(payload);
 }
 
 }  // namespace gicodec::reference

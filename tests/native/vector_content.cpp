@@ -168,8 +168,8 @@ Bytes make_vertices(const TextureDesc& desc, VertexContent content, unsigned fra
 
 UpdateCase make_vertex_update(const TextureDesc& desc, VertexContent content, UpdateMode mode,
                               std::uint32_t one_in, std::uint64_t seed) {
-  const bool keyframe = mode != UpdateMode::update, fresh = mode == UpdateMode::fresh;
-  UpdateCase u{desc, {}, {}, {}, {}, keyframe, {}, fresh};
+  const bool keyframe = mode != UpdateMode::update, intra = mode == UpdateMode::intra;
+  UpdateCase u{desc, {}, {}, {}, {}, keyframe, {}, intra};
   const std::size_t size = block_bytes(desc);
   Bytes now = make_vertices(desc, content, 1, seed);
   Random random(seed);
@@ -187,7 +187,7 @@ UpdateCase make_vertex_update(const TextureDesc& desc, VertexContent content, Up
         std::copy_n(&u.mirror[b * size + h * record], record, &block[h * record]);
     }
     u.records.insert(u.records.end(), block.begin(), block.end());
-    if (!fresh) continue;
+    if (!intra) continue;
     std::generate_n(u.mirror.begin() + static_cast<std::ptrdiff_t>(b * size), size,
                     [&] { return static_cast<std::byte>(random()); });
   }

@@ -12,9 +12,9 @@ enum class VertexContent { smooth, integrated, edges, bits };
 inline constexpr VertexContent kVertexContents[] = {
     VertexContent::smooth, VertexContent::integrated, VertexContent::edges, VertexContent::bits};
 
-enum class UpdateMode { keyframe, update, fresh };
+enum class UpdateMode { keyframe, update, intra };
 inline constexpr UpdateMode kUpdateModes[] = {UpdateMode::keyframe, UpdateMode::update,
-                                              UpdateMode::fresh};
+                                              UpdateMode::intra};
 
 [[nodiscard]] TextureDesc vertices(Grid grid, bool floats);
 /// Records of every vertex at frame 0, 1, ...

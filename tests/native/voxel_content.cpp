@@ -262,8 +262,8 @@ BrickPool make_voxels(const TextureDesc& desc, VoxelContent content, unsigned fr
 
 UpdateCase make_voxel_update(const TextureDesc& desc, VoxelContent content, UpdateMode mode,
                              std::uint32_t one_in, std::uint64_t seed) {
-  const bool keyframe = mode != UpdateMode::update, fresh = mode == UpdateMode::fresh;
-  UpdateCase u{desc, {}, {}, {}, {}, keyframe, {}, fresh};
+  const bool keyframe = mode != UpdateMode::update, intra = mode == UpdateMode::intra;
+  UpdateCase u{desc, {}, {}, {}, {}, keyframe, {}, intra};
   const std::size_t size = block_bytes(desc), said = presence_bytes(desc);
   Random random(seed);
   if (mode != UpdateMode::keyframe) {
@@ -282,7 +282,7 @@ UpdateCase make_voxel_update(const TextureDesc& desc, VoxelContent content, Upda
     u.blocks.push_back(b);
     append(u.records, now.records, b, size);
     append(u.presence, now.presence, b, said);
-    if (!fresh) continue;
+    if (!intra) continue;
     const auto any = [&] { return std::byte(random()); };
     std::generate_n(&u.mirror[b * size], size, any);
     std::generate_n(&u.mirror_presence[b * said], said, any);

@@ -61,7 +61,7 @@ Result<VolumeDesc> read(std::span<const std::byte> description) {
   return volume;
 }
 
-constexpr std::uint32_t kMostRecords = 64;  ///< of a block
+constexpr std::uint32_t kMaxRecords = 64;  ///< of a block
 
 TextureDesc plain(Format format, BlockShape block) {
   TextureDesc desc;
@@ -118,8 +118,8 @@ TextureGroup AnyVolume::make_set(Random& random, std::size_t place) {
   for (std::uint32_t i = 0, textures = pick(random, 1, 2); i < textures; ++i) {
     TextureDesc desc;
     do {
-      desc = any_desc(random, kMostRecords);
-    } while (record_count(desc.block) > kMostRecords || validate(desc) != Status::ok);
+      desc = any_desc(random, kMaxRecords);
+    } while (record_count(desc.block) > kMaxRecords || validate(desc) != Status::ok);
     desc.records = {};
     if (i > 0 || chance(random, 3)) {
       desc.presence = Presence::all;

@@ -33,7 +33,7 @@ struct Hostile {
   ConnectionId connection = 0;  ///< 0: not connected
   double again = 0;             ///< when it connects again
   std::uint32_t sync = 1;
-  std::uint32_t update_epoch = 0, number = 0;  ///< of the last update that it got
+  std::uint32_t update_sync = 0, number = 0;  ///< of the last update that it got
   bool welcome = false;
   int turn = 0;
   std::vector<Message> said;

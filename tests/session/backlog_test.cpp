@@ -36,7 +36,7 @@ struct Written {
 
 struct Sent {
   std::vector<std::uint32_t> blocks;
-  std::uint64_t looked_at = 0;
+  std::uint64_t examined = 0;
 };
 
 class Backlog : public testing::Test {
@@ -63,7 +63,7 @@ class Backlog : public testing::Test {
 
 TEST_F(Backlog, IsSentInItsOrderAndLookedAtSeldom) {
   std::vector<std::uint32_t> times(kBlocks);
-  std::uint64_t looked_at = 0;
+  std::uint64_t examined = 0;
   std::uint32_t changed_first = 0, updates = 0;
   for (std::uint32_t seen = 0; seen < kBlocks; ++updates) {
     ASSERT_LT(updates, 4 * kBlocks / kBudget);
@@ -73,7 +73,7 @@ TEST_F(Backlog, IsSentInItsOrderAndLookedAtSeldom) {
       written_.write(block, updates + 2);
     }
     const Sent sent = update();
-    looked_at += sent.examined;
+    examined += sent.examined;
     EXPECT_LE(sent.blocks.size(), kBudget);
     for (const std::uint32_t block : sent.blocks) {
       if (times[block]++ == 0)
@@ -84,7 +84,7 @@ TEST_F(Backlog, IsSentInItsOrderAndLookedAtSeldom) {
   }
   EXPECT_LE(updates, kBlocks / kBudget + 8) << "what changed later came first";
   EXPECT_LT(changed_first, kBudget * 8);
-  EXPECT_LT(looked_at, updates * std::uint64_t{kBlocks} * 2 / 3);
+  EXPECT_LT(examined, updates * std::uint64_t{kBlocks} * 2 / 3);
   for (int i = 0; i < 40; ++i) update();
   EXPECT_EQ(distributor_.state(client_)->pending, 0U);
 }

@@ -48,20 +48,19 @@ TEST(BlocksForFew, AreNotStarvedByPacketsForAll) {
 
 /// Looking for what to write takes longer than an update may, whatever is written.
 TEST(BlocksForFew, AreNotStarvedByLookingForThem) {
-  constexpr double kMost = 0.2, kLooking = 0.3, kBlock = 1e-5;
-  const auto looked_at = static_cast<std::uint64_t>(64 * kLooking / kBlock);
+  constexpr double kMax = 0.2, kLooking = 0.3, kBlock = 1e-5;
+  const auto examined = static_cast<std::uint64_t>(64 * kLooking / kBlock);
   double limit = 1000;
   for (int i = 0; i < 100; ++i) {
     const auto few = static_cast<std::uint64_t>(limit);
-    limit =
-        next_unicast_block_limit(limit, {few, few, looked_at}, kLooking + kBlock * limit, kMost);
+    limit = next_unicast_block_limit(limit, {few, few, examined}, kLooking + kBlock * limit, kMax);
   }
-  EXPECT_NEAR(limit, 0.15 * kMost / kBlock, 100);
+  EXPECT_NEAR(limit, 0.15 * kMax / kBlock, 100);
 }
 
 /// Blocks that take longer than an update may come in every other one, or fewer.
 TEST(BlocksForFew, MayTakeLongerThanAnUpdate) {
-  constexpr double kMost = 0.1, kBlock = 0.13, kRest = 0.01;
+  constexpr double kMax = 0.1, kBlock = 0.13, kRest = 0.01;
   double limit = 0, left = 0, took = 0;
   int late = 0;
   constexpr int kUpdates = 1000, kFirst = 30;
@@ -70,13 +69,13 @@ TEST(BlocksForFew, MayTakeLongerThanAnUpdate) {
     const std::uint64_t few = limit == 0 ? kFirst : left >= 1 ? 1 : 0;
     left -= static_cast<double>(few);
     const double seconds = kRest + kBlock * static_cast<double>(few);
-    limit = next_unicast_block_limit(limit, {few + 1, few, 0}, seconds, kMost);
+    limit = next_unicast_block_limit(limit, {few + 1, few, 0}, seconds, kMax);
     took += seconds;
-    late += seconds > 2 * kMost;
+    late += seconds > 2 * kMax;
   }
   EXPECT_EQ(late, 1);
-  EXPECT_GT(took / kUpdates, 0.5 * kMost);
-  EXPECT_LT(took / kUpdates, kMost);
+  EXPECT_GT(took / kUpdates, 0.5 * kMax);
+  EXPECT_LT(took / kUpdates, kMax);
 }
 
 TEST(BlocksForFew, HaveNoLimitBeforeAnUpdateTakesTooLong) {

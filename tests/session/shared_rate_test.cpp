@@ -37,7 +37,7 @@ class SharedRates : public testing::Test {
   struct Viewer {
     ClientId id = 0;
     std::map<StreamId, Decoder> decoders = {};
-    std::uint64_t bytes = 0, keyframes = 0, skips = 0, updates = 0;
+    std::uint64_t bytes = 0, keyframes = 0, catch_ups = 0, updates = 0;
   };
 
   Viewer join(std::uint64_t bytes) {
@@ -66,7 +66,7 @@ class SharedRates : public testing::Test {
       const auto info = peek(*packet.packet);
       viewer.bytes += packet.packet->size();
       viewer.keyframes += is_keyframe(info->type);
-      viewer.skips += is_stand_in(info->type) && !is_keyframe(info->type);
+      viewer.catch_ups += is_stand_in(info->type) && !is_keyframe(info->type);
     }
     viewer.updates += distributor_->packets(viewer.id).empty() ? 0 : 1;
   }
@@ -106,11 +106,11 @@ TEST_F(SharedRates, ABudgetIsUsedAndKeptOnAverage) {
     EXPECT_LT(share, 1.1 * shares[i]);
     // What was skipped never means a snapshot.
     EXPECT_EQ(viewers[i].keyframes, 0U);
-    EXPECT_GT(viewers[i].skips, 0U);
+    EXPECT_GT(viewers[i].catch_ups, 0U);
     EXPECT_EQ(viewers[i].updates, 128U);  // Some regions in each.
   }
   EXPECT_EQ(all.keyframes, kStreams);
-  EXPECT_EQ(all.skips, 0U);
+  EXPECT_EQ(all.catch_ups, 0U);
 }
 
 /// Skips of clients with one rate and group are the same packets, whenever they joined.
@@ -153,7 +153,7 @@ TEST_F(SharedRates, WhoWasAwayGoesOn) {
     deliver(away);
   }
   EXPECT_EQ(away.keyframes, kStreams);
-  EXPECT_EQ(away.skips, 3 * kStreams);
+  EXPECT_EQ(away.catch_ups, 3 * kStreams);
   // Many who stop at different times: of what they hold some is forgotten, and memory is bounded.
   std::vector<Viewer> many;
   for (int i = 0; i < 30; ++i) many.push_back(join(0));
@@ -167,18 +167,18 @@ TEST_F(SharedRates, WhoWasAwayGoesOn) {
     most = std::max(most, distributor_->memory());
   }
   for (Viewer& viewer : many) ASSERT_EQ(distributor_->suspend(viewer.id, false), Status::ok);
-  std::uint64_t keyframes = 0, skips = 0;
-  for (Viewer& viewer : many) viewer.keyframes = viewer.skips = 0;
+  std::uint64_t keyframes = 0, catch_ups = 0;
+  for (Viewer& viewer : many) viewer.keyframes = viewer.catch_ups = 0;
   for (int i = 0; i < 3; ++i) {  // A few states in each.
     update();
     for (Viewer& viewer : many) deliver(viewer);
   }
   for (Viewer& viewer : many) {
     keyframes += viewer.keyframes;
-    skips += viewer.skips;
+    catch_ups += viewer.catch_ups;
   }
-  EXPECT_EQ(keyframes + skips, 30 * kStreams);
-  EXPECT_EQ(skips, 12 * kStreams);
+  EXPECT_EQ(keyframes + catch_ups, 30 * kStreams);
+  EXPECT_EQ(catch_ups, 12 * kStreams);
   EXPECT_LT(most, 24 * kBlocks * block_bytes(texture_.desc()));
 }
 
@@ -192,7 +192,7 @@ TEST_F(SharedRates, NothingIsMadeForNobody) {
   ASSERT_EQ(distributor_->suspend(viewer.id, false), Status::ok);
   update();
   deliver(viewer);
-  EXPECT_EQ(viewer.skips, 0U);  // The next packet of the chain, as if there had been no others.
+  EXPECT_EQ(viewer.catch_ups, 0U);  // The next packet of the chain, as if there had been no others.
   EXPECT_EQ(viewer.decoders.begin()->second.sequence(), 2U);
 }
 

@@ -44,7 +44,7 @@ play() {
 # all_sent NAME: by its last statistics the server NAME has sent its last frame to its client, who has
 # taken all of it.
 all_sent() {
-  [[ $(tail -n 1 "$1.jsonl") =~ \"update\":([0-9]+),.*\"in_flight\":0,.*\"owed\":0, ]] && [ "${BASH_REMATCH[1]}" -gt 8 ]
+  [[ $(tail -n 1 "$1.jsonl") =~ \"update\":([0-9]+),.*\"in_flight\":0,.*\"pending\":0, ]] && [ "${BASH_REMATCH[1]}" -gt 8 ]
 }
 
 # all_recorded SERVER CLIENT NAME: ends a client that has all that there is.

@@ -84,12 +84,12 @@ TEST(HalfOpen, TheOldestOfWhoeverHasMostMakesRoom) {
     return half_open.add(links.back().get());
   };
   EXPECT_EQ(add("honest"), nullptr);
-  for (std::size_t i = 1; i < HalfOpen::kMost; ++i) EXPECT_EQ(add(i % 3 == 0 ? "a" : "b"), nullptr);
+  for (std::size_t i = 1; i < HalfOpen::kMax; ++i) EXPECT_EQ(add(i % 3 == 0 ? "a" : "b"), nullptr);
   for (int i = 0; i < 1000; ++i) {
     const WebLink* const out = add(i % 2 == 0 ? "a" : "b");
     ASSERT_NE(out, nullptr);
     EXPECT_NE(out->peer.host, "honest");
-    EXPECT_LE(half_open.all().size(), HalfOpen::kMost);
+    EXPECT_LE(half_open.all().size(), HalfOpen::kMax);
   }
   EXPECT_EQ(half_open.all().front()->peer.host, "honest");
   EXPECT_EQ(half_open.take("nobody"), nullptr);
@@ -108,7 +108,7 @@ TEST(HalfOpen, OfAddressesWithOneEachTheOldestMakesRoomWhateverTheirNames) {
       links.push_back(std::make_unique<WebLink>());
       links.back()->peer.host = "127.0.0." + std::to_string(order[i]);
       const WebLink* const out = half_open.add(links.back().get());
-      EXPECT_EQ(out, i < HalfOpen::kMost ? nullptr : links[i - HalfOpen::kMost].get());
+      EXPECT_EQ(out, i < HalfOpen::kMax ? nullptr : links[i - HalfOpen::kMax].get());
       EXPECT_EQ(half_open.all().back(), links.back().get());
     }
   }

@@ -78,11 +78,11 @@ TEST(WebCrowd, TheOldestHandshakesMakeRoomAndAnHonestClientGetsIn) {
     links.push_back(connect_from(1 + i % 7, 1 + i * 89 % 251, server->port()));
     ASSERT_GE(links.back(), 0) << i;
     // As the server takes them one after the other, it is known which are the oldest.
-    if (i >= HalfOpen::kMost) {
-      ASSERT_TRUE(waits_until([&] { return is_closed(links[i - HalfOpen::kMost]); })) << i;
+    if (i >= HalfOpen::kMax) {
+      ASSERT_TRUE(waits_until([&] { return is_closed(links[i - HalfOpen::kMax]); })) << i;
     }
   }
-  for (std::size_t i = kAddresses - HalfOpen::kMost; i < kAddresses; ++i) {
+  for (std::size_t i = kAddresses - HalfOpen::kMax; i < kAddresses; ++i) {
     EXPECT_FALSE(is_closed(links[i])) << i;
   }
   const auto client = make_web(NetOptions{});

@@ -11,7 +11,7 @@ namespace gicodec::streaming {
 using tools::Exit;
 using tools::fail;
 
-static constexpr int kMost = std::numeric_limits<int>::max();
+static constexpr int kMax = std::numeric_limits<int>::max();
 
 void add_client_flags(tools::Command& app, ClientFlags& o) {
   app.add_option("--connect", o.connect,
@@ -33,10 +33,10 @@ void add_client_flags(tools::Command& app, ClientFlags& o) {
       ->show_default();
   app.add_option("--budget-blocks", o.viewer.client.budget.blocks,
                  "Blocks (probes) per update, at most; 0: no limit")
-      ->allow(tools::in_range(0, kMost));
+      ->allow(tools::in_range(0, kMax));
   app.add_option("--budget-bytes", o.viewer.client.budget.bytes,
                  "Bytes per update, at most; 0: no limit")
-      ->allow(tools::in_range(0, kMost));
+      ->allow(tools::in_range(0, kMax));
   app.add_option(
          "--max-memory", o.memory,
          "MiB that decoding may take, and drawing other light than probes; a server may ask "
@@ -48,7 +48,7 @@ void add_client_flags(tools::Command& app, ClientFlags& o) {
                  "all, or the probes of a box in the grid, whatever is looked at")
       ->type_name("all|X0-X1,Y0-Y1,Z0-Z1");
   app.add_option("--updates", o.viewer.updates, "Leave after N updates; 0: do not")
-      ->allow(tools::in_range(0, kMost))
+      ->allow(tools::in_range(0, kMax))
       ->type_name("N");
   app.add_option("--seconds", o.viewer.seconds, "Leave after so long; 0: do not")
       ->allow(tools::in_range(0.0, 1e9));

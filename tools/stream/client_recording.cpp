@@ -18,9 +18,9 @@ namespace gicodec::streaming {
 namespace {
 
 /// A server that changes its volumes all the time does not fill a folder.
-constexpr std::uint32_t kMostFiles = 1000;
+constexpr std::uint32_t kMaxFiles = 1000;
 /// Snapshots are written again where volumes or sessions change, which costs a server nothing.
-constexpr std::uint64_t kMostGrowth = 64, kFreeGrowth = std::uint64_t{1} << 30;
+constexpr std::uint64_t kMaxGrowth = 64, kFreeGrowth = std::uint64_t{1} << 30;
 
 /// Says what becomes of the client.
 constexpr const char* kGoesOn = "; the recording ends here, the client goes on";
@@ -99,13 +99,13 @@ void ClientRecording::open_file() {
   std::error_code error;
   do {
     name_ = numbered(options_.path, ++number_);
-  } while (number_ > 1 && number_ <= kMostFiles && options_.existing == tools::Existing::refuse &&
+  } while (number_ > 1 && number_ <= kMaxFiles && options_.existing == tools::Existing::refuse &&
            std::filesystem::exists(name_, error));
-  if (number_ > kMostFiles)
+  if (number_ > kMaxFiles)
     tools::fail(tools::Exit::io,
                 "{}: the recording has come to {} files, one for each session and each change of "
                 "volumes; record to another name",
-                options_.path, kMostFiles);
+                options_.path, kMaxFiles);
   file_ = std::make_unique<tools::AtomicFile>(name_, options_.existing,
                                               tools::AtomicFile::Temporary::partial);
   partial_ = partial_of(name_);
@@ -180,7 +180,7 @@ void ClientRecording::check_limits(const Client& client) {
                                     "for no limit, records more",
                                     options_.max_bytes >> 20));
   }
-  if (bytes > kFreeGrowth && (bytes - kFreeGrowth) / kMostGrowth > received) {
+  if (bytes > kFreeGrowth && (bytes - kFreeGrowth) / kMaxGrowth > received) {
     finish_early(
         tools::Exit::different,
         fmt::format("{:.0f} MB are recorded of {:.2f} MB that came, as of a server that "

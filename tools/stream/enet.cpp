@@ -91,14 +91,14 @@ void Enet::prepare(Link link) const {
 /// Who knocked and went away keeps no place for half a minute; and ENet puts its own window back
 /// whenever somebody came or went.
 void Enet::tend() {
-  constexpr std::uint32_t kMost = 2000, kEvery = 100;  // milliseconds
+  constexpr std::uint32_t kMax = 2000, kEvery = 100;  // milliseconds
   const std::uint32_t now = enet_time_get();
   if (now - tended_ < kEvery) return;
   tended_ = now;
   for (std::size_t i = 0; i < host_->peerCount; ++i) {
     ENetPeer& peer = host_->peers[i];
     if (peer.state == ENET_PEER_STATE_ACKNOWLEDGING_CONNECT) {
-      enet_peer_timeout(&peer, 1, kMost, kMost);
+      enet_peer_timeout(&peer, 1, kMax, kMax);
     } else if (peer.state == ENET_PEER_STATE_CONNECTED) {
       peer.windowSize = options_.window;
     }

@@ -143,7 +143,7 @@ class RecordingPlayer final : public Player {
     std::string remark;  ///< on those that cannot be played; empty if all can
   };
   Chosen choose() {
-    constexpr std::size_t kMostWords = 4;
+    constexpr std::size_t kMaxWords = 4;
     const auto& all = input_->description().volumes;
     Chosen chosen;
     played_.clear();
@@ -154,12 +154,12 @@ class RecordingPlayer final : public Player {
       if (why.empty()) {
         chosen.volumes.push_back(volume(entry));
         for (std::size_t i = 0; i < entry.textures; ++i) played_.push_back(entry.first_texture + i);
-      } else if (++left_out <= kMostWords) {
+      } else if (++left_out <= kMaxWords) {
         words += (words.empty() ? "" : "; ") + why;
       }
     }
     if (left_out == 0) return chosen;
-    if (left_out > kMostWords) words += fmt::format("; and {} more", left_out - kMostWords);
+    if (left_out > kMaxWords) words += fmt::format("; and {} more", left_out - kMaxWords);
     if (chosen.volumes.empty()) {
       fail(Exit::bad_input,
            "{}: no volume of it can be played: {}; a newer gi-server may know more, and the "

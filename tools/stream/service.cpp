@@ -129,12 +129,12 @@ void Service::update() {
 /// Takes what arrives while an update is made off the network, so that nothing is lost there. The
 /// server hears of it afterwards.
 Status Service::update_and_listen() {
-  constexpr std::size_t kMostBytes = 16 << 20;
+  constexpr std::size_t kMaxBytes = 16 << 20;
   std::vector<NetEvent> arrived;
   std::size_t bytes = 0;
   std::optional<Status> status;
   try {
-    while (bytes < kMostBytes && !(status = updater_.take())) {
+    while (bytes < kMaxBytes && !(status = updater_.take())) {
       NetEvent event;
       if (!net_.next(event, 1)) continue;
       bytes += sizeof event + event.message.size();

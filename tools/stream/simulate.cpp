@@ -17,11 +17,11 @@ namespace {
 constexpr double kSpread = 16;  ///< seconds of the camera's path that are shared out
 constexpr double kAgain = 0.5;  ///< seconds before a lost client connects again
 constexpr std::chrono::milliseconds kIdle{1};
-constexpr double kGoodbye = 0.7;         ///< seconds for the last messages to arrive
-constexpr std::size_t kMost = 1U << 20;  ///< samples kept
+constexpr double kGoodbye = 0.7;        ///< seconds for the last messages to arrive
+constexpr std::size_t kMax = 1U << 20;  ///< samples kept
 
 void keep(std::vector<float>& samples, double value) {
-  if (samples.size() < kMost) samples.push_back(static_cast<float>(value));
+  if (samples.size() < kMax) samples.push_back(static_cast<float>(value));
 }
 
 struct Simulated {

@@ -21,7 +21,7 @@ using tools::fail;
 constexpr const char* kHash = "pbkdf2-sha256";
 /// Tokens are 256 random bits, which nobody guesses however fast the hash is; this keeps the one
 /// who reads the file from trying tokens that a person made up.
-constexpr unsigned kRounds = 4096, kMostRounds = 1'000'000;
+constexpr unsigned kRounds = 4096, kMaxRounds = 1'000'000;
 constexpr std::size_t kSecret = 32, kSalt = 16, kMaxName = 64;  // bytes
 constexpr std::size_t kMaxFile = std::size_t{4} << 20;          // bytes
 constexpr const char* kCure = "gi-server --add-user NAME FILE writes such lines";
@@ -50,7 +50,7 @@ void add_line(Users& users, std::string_view line, const std::string& where) {
   const auto salt_bytes = from_hex(salt), hash_bytes = from_hex(hash);
   const bool sound = is_name(name) && kind == kHash && parsed.ec == std::errc{} &&
                      parsed.ptr == rounds.data() + rounds.size() && user.rounds > 0 &&
-                     user.rounds <= kMostRounds && salt_bytes && salt_bytes->size() >= kSalt / 2 &&
+                     user.rounds <= kMaxRounds && salt_bytes && salt_bytes->size() >= kSalt / 2 &&
                      hash_bytes && hash_bytes->size() == kSecret;
   if (!sound)
     fail(Exit::bad_input, "{}: is no line of a user, NAME:{}:ROUNDS:SALT:HASH; {}", where, kHash,

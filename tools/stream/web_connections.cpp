@@ -20,7 +20,7 @@ constexpr double kReading = 0.4;
 
 void WebLoop::Loop::accept() {
   TcpPeer peer;
-  for (std::size_t i = 0; i < HalfOpen::kMost; ++i) {  // Others have their turn as well.
+  for (std::size_t i = 0; i < HalfOpen::kMax; ++i) {  // Others have their turn as well.
     const int descriptor = accept_tcp(state.listener, peer);
     if (descriptor < 0) return;
     WebLink* const link = enter(peer);

@@ -24,7 +24,7 @@ bool floods(const WebLink& link, double now) {
 WebLink* HalfOpen::add(WebLink* link) {
   // Chosen among those before it: an address with most of them has had one, unless all have one.
   auto oldest = links_.end();
-  if (links_.size() >= kMost) {
+  if (links_.size() >= kMax) {
     std::map<std::string_view, std::size_t> counts{{link->peer.host, 1}};
     for (const WebLink* one : links_) ++counts[one->peer.host];
     const auto count = [](const auto& one) { return one.second; };

@@ -69,7 +69,7 @@ class HalfOpen {
   [[nodiscard]] WebLink* take(const std::string& host);
   void remove(WebLink* link) { links_.remove(link); }
   [[nodiscard]] const std::list<WebLink*>& all() const { return links_; }
-  static constexpr std::size_t kMost = 64;
+  static constexpr std::size_t kMax = 64;
 
  private:
   std::list<WebLink*> links_;  ///< oldest first

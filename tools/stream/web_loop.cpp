@@ -58,7 +58,7 @@ void WebLoop::Loop::start() {
   info.retry_and_idle_policy = &patience;
   info.pt_serv_buf_size = kRead;
   info.fd_limit_per_thread = static_cast<unsigned>(
-      (serves ? state.options.links + HalfOpen::kMost : state.options.links) + kFiles);
+      (serves ? state.options.links + HalfOpen::kMax : state.options.links) + kFiles);
   context = lws_create_context(&info);
   vhost = context == nullptr ? nullptr : lws_create_vhost(context, &info);
   if (vhost == nullptr || !prepared) fail(Exit::io, "TLS or WebSockets cannot be started here");

@@ -18,7 +18,7 @@
 namespace gicodec {
 namespace {
 
-constexpr std::size_t kMostOfContainer = 256;  ///< volumes, and textures
+constexpr std::size_t kMaxOfContainer = 256;  ///< volumes, and textures
 constexpr std::uint64_t kFreeSnapshots = std::uint64_t{64} << 20, kSnapshotRatio = 16;
 
 /// Where a stream stands: at the client, and under which checksum in the container.
@@ -99,8 +99,8 @@ Result<ContainerDescription> ClientRecorder::describe(const Client& client) {
     if (frame.volumes.empty()) return Status::out_of_order;
     for (const ClientVolume& volume : frame.volumes) {
       const std::size_t first = made.textures.size();
-      if (made.volumes.size() == kMostOfContainer ||
-          volume.textures.size() > kMostOfContainer - first) {
+      if (made.volumes.size() == kMaxOfContainer ||
+          volume.textures.size() > kMaxOfContainer - first) {
         return Status::limit_exceeded;
       }
       const Status added = add_volume(made, volume.name, volume.desc, options.kinds);

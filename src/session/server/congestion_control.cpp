@@ -6,16 +6,16 @@
 namespace gicodec {
 namespace {
 
-constexpr double kLeast = 2 << 10;
+constexpr double kMin = 2 << 10;
 // Queues, in intervals. Together with an update's own time they stay below three.
 constexpr double kEmpty = 0.5;  ///< up to here budgets grow fast, those of new clients faster still
 constexpr double kGood = 1;     ///< up to here they grow evenly, so that shares become even
 constexpr double kFull = 1.5;   ///< from here on they shrink
 constexpr double kTooLate = 1.75;  ///< nothing is made while something is on its way for longer
-constexpr double kShrink = 0.85, kShrinkOfMany = 0.7, kMany = 2, kMostShrink = 0.1;
+constexpr double kShrink = 0.85, kShrinkOfMany = 0.7, kMany = 2, kMaxShrink = 0.1;
 constexpr double kGrowth = 0.05;  // of the mean
-constexpr double kMostGrowth = 0.25;
-constexpr double kMost = 1 << 30;
+constexpr double kMaxGrowth = 0.25;
+constexpr double kMax = 1 << 30;
 /// Seconds after which a path that was never idle is left idle, to see how long that takes.
 constexpr double kLookAgain = 10;
 
@@ -23,10 +23,10 @@ constexpr double kLookAgain = 10;
 
 double next_unicast_block_limit(double before, const WrittenBlocks& written, double seconds,
                                 double most) noexcept {
-  constexpr double kFewest = 1.0 / 64, kNoLimit = 1 << 30, kAim = 0.7, kLeastStep = 1.0 / 16,
-                   kMostStep = 1.25;
+  constexpr double kMinBlocks = 1.0 / 64, kNoLimit = 1 << 30, kAim = 0.7, kMinStep = 1.0 / 16,
+                   kMaxStep = 1.25;
   // Packets for all take what they need. They do not starve those for few, who get this at least.
-  constexpr double kLeastShare = 0.15;
+  constexpr double kMinShare = 0.15;
   const auto few = static_cast<double>(written.unicast);
   if (before == 0 && (seconds <= most || few == 0)) return 0;
   // Looking for blocks takes as long however few are written.
@@ -34,15 +34,15 @@ double next_unicast_block_limit(double before, const WrittenBlocks& written, dou
   const double all =
       static_cast<double>(written.all) + static_cast<double>(written.examined) / kLooks;
   const double spent = all > 0 ? seconds * few / all : 0;
-  const double left = std::max(kAim * most - (seconds - spent), kLeastShare * most);
+  const double left = std::max(kAim * most - (seconds - spent), kMinShare * most);
   const double from = few > 0 && (before == 0 || seconds > most) ? few : before;
-  const double step = std::clamp(left / std::max(spent, 1e-9), kLeastStep, kMostStep);
-  const double blocks = std::max(kFewest, from * step);
+  const double step = std::clamp(left / std::max(spent, 1e-9), kMinStep, kMaxStep);
+  const double blocks = std::max(kMinBlocks, from * step);
   return blocks > kNoLimit ? 0 : blocks;
 }
 
 CongestionControl::CongestionControl(std::uint64_t first) noexcept
-    : first_(std::clamp(static_cast<double>(first), kLeast, kMost)), bytes_(first_) {}
+    : first_(std::clamp(static_cast<double>(first), kMin, kMax)), bytes_(first_) {}
 
 void CongestionControl::answered(double seconds, double now) noexcept {
   if (idle_ >= 0 && seconds > idle_) return;
@@ -77,20 +77,20 @@ void CongestionControl::acknowledged(const Sent& update, double now, double inte
     // What was before it in the queue has arrived meanwhile.
     const double rate = static_cast<double>(delivered_ - update.delivered) / (latency - idle_);
     const double shrink = bytes_ > kMany * mean ? kShrinkOfMany : kShrink;
-    bytes_ = std::clamp(shrink * rate * interval, kMostShrink * bytes_, shrink * bytes_);
-    bytes_ = std::max(bytes_, kLeast);
+    bytes_ = std::clamp(shrink * rate * interval, kMaxShrink * bytes_, shrink * bytes_);
+    bytes_ = std::max(bytes_, kMin);
   } else if (!update.limited || queue > (update.alone ? kFull : kGood)) {
     return;
   } else if (queue <= kEmpty && (starting_ || bytes_ <= mean)) {
     // A small update says little of what a path carries.
     const bool much = static_cast<double>(update.bytes) >= bytes_ / 2;
-    bytes_ *= !starting_ ? 1 + kMostGrowth : much ? 2 : 1;
+    bytes_ *= !starting_ ? 1 + kMaxGrowth : much ? 2 : 1;
   } else {
     // As fast for long ways as for short ones.
-    bytes_ += std::clamp(kGrowth * mean * std::max(1.0, idle_ / interval), kLeast / 4,
-                         kMostGrowth * bytes_);
+    bytes_ +=
+        std::clamp(kGrowth * mean * std::max(1.0, idle_ / interval), kMin / 4, kMaxGrowth * bytes_);
   }
-  bytes_ = std::min(bytes_, kMost);
+  bytes_ = std::min(bytes_, kMax);
   starting_ = starting_ && queue <= kEmpty;
   changed_ = now;
 }

@@ -80,7 +80,7 @@ void choose(std::vector<Candidate>& candidates, std::size_t limit, const Missing
     float least = 0;
     bool ranked = false;
     for (const Candidate& c : candidates) {
-      least = std::max(least, kLeastWeight * c.weight);
+      least = std::max(least, kMinWeight * c.weight);
       ranked = ranked || c.ranked;
     }
     const auto heavier = [least](const Candidate& a, const Candidate& b) {

@@ -30,7 +30,7 @@ struct Candidate {
 /// Throws std::bad_alloc.
 [[nodiscard]] std::vector<std::uint32_t> block_order(const TextureDesc& desc);
 
-inline constexpr float kLeastWeight = 1.0F / 64;
+inline constexpr float kMinWeight = 1.0F / 64;
 
 /// Keeps the `limit` that are pending longest, and those that are ranked: what is worth a look at
 /// how much it changed or matters.
@@ -43,7 +43,7 @@ using Missing = std::function<std::vector<Candidate>(const Candidate&)>;
 /// of the places, rounded up, go to those pending longest, so that no block waits for more than
 /// 2·⌈n / limit⌉ updates while n blocks compete, unless some are ranked; the others to the largest
 /// weight, which rises with age, then to the longest pending. The least weight counts as
-/// kLeastWeight of the largest, so that everything comes in the end. In a candidate's place goes
+/// kMinWeight of the largest, so that everything comes in the end. In a candidate's place goes
 /// what it lacks, whether it is among the candidates or not, and itself if there is room then.
 void choose(std::vector<Candidate>& candidates, std::size_t limit, const Missing& missing = {});
 

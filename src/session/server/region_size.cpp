@@ -7,7 +7,7 @@ namespace {
 
 /// A link of 1 Mbps carries the update of so many probes' records in about a tenth of a second.
 constexpr std::size_t kRegionBytes = 192 << 10;
-constexpr std::size_t kMostSlots = 4096;
+constexpr std::size_t kMaxSlots = 4096;
 
 /// Of whatever travels in one packet, at its largest.
 std::size_t bytes_of_a_block(const VolumeDesc& volume) noexcept {
@@ -30,9 +30,8 @@ Grid usual_region(const VolumeDesc& volume) noexcept {
   const TextureDesc& first = volume.groups.front().textures.front().desc;
   const std::size_t bytes = bytes_of_a_block(volume);
   if (first.space == Space::pool) {
-    return {
-        static_cast<std::uint32_t>(std::clamp(kRegionBytes / bytes, std::size_t{1}, kMostSlots)), 1,
-        1};
+    return {static_cast<std::uint32_t>(std::clamp(kRegionBytes / bytes, std::size_t{1}, kMaxSlots)),
+            1, 1};
   }
   Grid region = first.grid.z > 1 ? Grid{4, 4, 4} : Grid{8, 8, 1};
   while (std::size_t{region.x} * region.y * region.z * bytes > kRegionBytes) {

@@ -10,8 +10,8 @@ namespace {
 
 /// More than numbers hold is as good as no limit.
 std::uint64_t whole_bytes(double bytes) noexcept {
-  constexpr double kMost = 1e18;
-  return static_cast<std::uint64_t>(std::min(bytes, kMost));
+  constexpr double kMax = 1e18;
+  return static_cast<std::uint64_t>(std::min(bytes, kMax));
 }
 
 }  // namespace
@@ -26,15 +26,15 @@ void Server::State::limit_unicast_blocks(double blocks) noexcept {
                                                  : 0);
 }
 
-void Server::report_update_time(double seconds, double most) noexcept {
-  if (!std::isfinite(seconds) || !std::isfinite(most) || most <= 0) return;
+void Server::report_update_time(double elapsed, double budget) noexcept {
+  if (!std::isfinite(elapsed) || !std::isfinite(budget) || budget <= 0) return;
   state_->limit_unicast_blocks(next_unicast_block_limit(
-      state_->unicast_block_limit, state_->distributor.written(), std::max(seconds, 0.0), most));
+      state_->unicast_block_limit, state_->distributor.written(), std::max(elapsed, 0.0), budget));
   // The time that making took is none that they waited on their way.
   for (const auto& [id, connection] : state_->connections) {
     if (connection->in_flight.empty() || connection->in_flight.back().made != state_->updated)
       continue;
-    connection->in_flight.back().sent.made += std::clamp(seconds, 0.0, most);
+    connection->in_flight.back().sent.made += std::clamp(elapsed, 0.0, budget);
   }
 }
 

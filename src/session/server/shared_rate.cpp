@@ -12,7 +12,7 @@ constexpr float kGuessedRatio = 3;
 // Consecutive places and groups are far apart in every period of 2, 4, ... 32 updates.
 constexpr std::uint64_t kPlaces = 13, kGroups = 9;
 /// With many streams there are some in every update; with few, clients take turns in groups.
-constexpr std::size_t kMostGroups = 4, kManyStreams = 64;
+constexpr std::size_t kMaxTurns = 4, kManyStreams = 64;
 
 /// Spreads any run of numbers evenly over 0..1.
 float spread(std::size_t place) noexcept {
@@ -27,7 +27,7 @@ void SharedRate::choose(const Budget& budget, std::size_t streams,
   if (!measured_) bytes_ = static_cast<float>(bytes_of_a_stream) / kGuessedRatio;
   streams_ = streams;
   groups_ = static_cast<std::uint32_t>(
-      std::clamp<std::size_t>(kManyStreams / std::max<std::size_t>(streams, 1), 1, kMostGroups));
+      std::clamp<std::size_t>(kManyStreams / std::max<std::size_t>(streams, 1), 1, kMaxTurns));
   share_ = 1;
   const auto limit = [&](auto most, float in_a_turn) {
     const float all = in_a_turn * static_cast<float>(streams);

@@ -29,7 +29,7 @@ WatchedDecoder decoder_that_holds(const TextureDesc& desc, const Packet& keyfram
   return WatchedDecoder(*std::move(decoder));
 }
 
-/// After `packet`, which was fresh: the same blocks come out where the listed ones were others.
+/// After `packet`, which was intra: the same blocks come out where the listed ones were others.
 void check_independence(const Decoder& decoder, const Bytes& before, const Bytes& after,
                         std::span<const std::byte> packet) {
   const auto& desc = decoder.desc();
@@ -48,7 +48,7 @@ void check_independence(const Decoder& decoder, const Bytes& before, const Bytes
   Bytes bytes(packet.begin(), packet.end());
   put_right(bytes, desc, state_of(stranger.decoder()));
   check(stranger.decode(bytes) == Status::ok && stranger.records() == after,
-        "a fresh packet does not look at what its blocks held");
+        "an intra packet does not look at what its blocks held");
 }
 
 }  // namespace
