@@ -20,7 +20,7 @@ Bytes decode(const UpdateCase& u, std::span<const std::byte> payload, unsigned t
 }
 
 void check_everything(UpdateCase u, native::PayloadSettings settings) {
-  SCOPED_TRACE(rc::toString(u.desc) + (u.fresh ? " fresh" : u.keyframe ? " keyframe" : " update"));
+  SCOPED_TRACE(rc::toString(u.desc) + (u.intra ? " intra" : u.keyframe ? " keyframe" : " update"));
   const Bytes payload = encode(u, settings, Isa::scalar);
   EXPECT_LE(payload.size(), native::payload_bound(u.desc, u.blocks.size()));
   static unsigned turn = 0;
@@ -39,14 +39,14 @@ void check_everything(UpdateCase u, native::PayloadSettings settings) {
     }
   }
   const auto expected = reference::decode(u.desc, u.blocks, u.mirror, u.received, payload,
-                                          u.presence, u.fresh, u.mirror_presence);
+                                          u.presence, u.intra, u.mirror_presence);
   ASSERT_TRUE(expected.has_value());
   EXPECT_EQ(*expected, u.records);
 }
 
 UpdateCase any_update(const TextureDesc& desc, Content content, std::uint32_t one_in,
                       std::uint64_t seed) {
-  if (seed % 4 == 0) return make_fresh(desc, content, one_in, seed);
+  if (seed % 4 == 0) return make_intra(desc, content, one_in, seed);
   return make_update(desc, content, seed % 4 == 1, one_in, seed);
 }
 

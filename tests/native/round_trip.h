@@ -11,7 +11,7 @@ namespace gicodec::test {
 /// Encodes on several instruction sets and numbers of threads, and decodes by each and by the
 /// reference decoder.
 void check_everything(UpdateCase u, native::PayloadSettings settings);
-/// A keyframe, an update or a fresh one, by the seed.
+/// A keyframe, an update or an intra one, by the seed.
 [[nodiscard]] UpdateCase any_update(const TextureDesc& desc, Content content, std::uint32_t one_in,
                                     std::uint64_t seed);
 

@@ -106,8 +106,8 @@ TEST(NativeRoundTrip, VoxelsInSparsePackets) {
       std::vector<std::uint8_t> received(block_count(desc), 0);
       for (unsigned packet = 0; packet < 8; ++packet) {
         const auto now = test::make_voxels(desc, test::VoxelContent::crowded, packet, side);
-        const bool fresh = packet == 5;
-        test::UpdateCase u{desc, {}, {}, {}, {}, packet == 0 || fresh, {}, fresh};
+        const bool intra = packet == 5;
+        test::UpdateCase u{desc, {}, {}, {}, {}, packet == 0 || intra, {}, intra};
         for (std::uint32_t b = 0; b < block_count(desc); ++b) {
           if (!test::chance(random, 2)) continue;
           u.blocks.push_back(b);

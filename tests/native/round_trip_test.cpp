@@ -58,23 +58,23 @@ TEST(NativeRoundTrip, EveryFormatAndContent) {
 /// Probes that enter a volume are predicted from those that are there.
 TEST(NativeRoundTrip, FreshUpdatesCostLessThanKeyframes) {
   for (const auto& desc : {ddgi_irradiance({4, 8, 8}), ddgi_visibility({4, 8, 8})}) {
-    test::UpdateCase fresh = test::make_fresh(desc, test::Content::smooth, 1, 5);
+    test::UpdateCase intra = test::make_intra(desc, test::Content::smooth, 1, 5);
     const std::size_t size = block_bytes(desc);
     Bytes records;
-    std::erase_if(fresh.blocks, [&](std::uint32_t b) {
+    std::erase_if(intra.blocks, [&](std::uint32_t b) {
       if (b % 4 != 3) return true;
-      const auto block = std::span(fresh.records).subspan(b * size, size);
+      const auto block = std::span(intra.records).subspan(b * size, size);
       records.insert(records.end(), block.begin(), block.end());
       return false;
     });
-    fresh.records = std::move(records);
-    fresh.mirror = test::make_records(desc, test::Content::smooth, 0, 5);
-    fresh.received.assign(block_count(desc), 1);
-    check_everything(fresh, {});
-    test::UpdateCase keyframe = fresh;
-    keyframe.fresh = false;
+    intra.records = std::move(records);
+    intra.mirror = test::make_records(desc, test::Content::smooth, 0, 5);
+    intra.received.assign(block_count(desc), 1);
+    check_everything(intra, {});
+    test::UpdateCase keyframe = intra;
+    keyframe.intra = false;
     const auto bytes = [](const auto& u) { return test::encode(u, {}, best_isa()).size(); };
-    EXPECT_LT(bytes(fresh), bytes(keyframe));
+    EXPECT_LT(bytes(intra), bytes(keyframe));
   }
 }
 
