@@ -30,9 +30,6 @@ namespace gicodec::tools {
 /// empty if one can.
 [[nodiscard]] std::string no_dump(const ContainerDescription& description,
                                   const TextureEntry& texture);
-/// The same for what draws and replays probes alone.
-[[nodiscard]] std::string no_probes(const ContainerDescription& description,
-                                    const TextureEntry& texture);
 /// "R16G16_SFLOAT", or of a record of an application's own "16 bytes: a 32 sfloat, b 96 opaque".
 [[nodiscard]] std::string record_text(const Record& record);
 /// "8x8", or "6x1x2" of blocks that are deeper.

@@ -82,13 +82,14 @@ std::uint64_t light_memory(const VolumeDesc& desc, std::uint64_t textures) {
 }  // namespace
 
 constinit const kinds::TracedKind kTracedMaps{
-    "irradiance_maps",
-    "light maps over a scene's surfaces, or bases of them",
-    kSettings,
-    {},
-    trace,
-    light,
-    light_memory};
+    .name = "irradiance_maps",
+    .summary = "light maps over a scene's surfaces, or bases of them",
+    .settings = kSettings,
+    .drawing = {},
+    .trace = trace,
+    .light = light,
+    .light_memory = light_memory,
+    .remembers = true};
 
 std::vector<std::vector<std::array<Vec2, 3>>> second_uvs(const ddgi::Scene& scene,
                                                          std::uint32_t size) {

@@ -68,10 +68,9 @@ void add_flags(tools::Command& app, Options& o) {
   app.add_option("--budget-bytes", o.viewer.client.budget.bytes,
                  "Bytes per update, at most; 0: no limit")
       ->allow(tools::in_range(0, kMost));
-  app.add_option(
-         "--max-memory", o.memory,
-         "MiB that decoding may take, and drawing other light than probes; a server may ask "
-         "for much")
+  app.add_option("--max-memory", o.memory,
+                 "MiB that decoding may take, and drawing; a server may ask "
+                 "for much")
       ->allow(tools::in_range(1, 1 << 24))
       ->show_default()
       ->type_name("MIB");
