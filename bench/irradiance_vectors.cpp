@@ -45,8 +45,8 @@ struct Case {
     vectors::VectorOptions options;
     options.grid = {vertices, vertices, vertices};
     options.floats = floats;
-    options.rays = o.rays;
-    options.anew = anew;
+    options.gather.rays = o.rays;
+    options.gather.anew = anew;
     options.box = scene.volume;
     return options;
   }

@@ -73,7 +73,7 @@ struct Case {
     options.box =
         voxels::options_of(kinds::Settings("voxels", voxels::kTracedVoxels.settings, {}), scene, 1)
             .box;
-    options.rays = o.rays;
+    options.gather.rays = o.rays;
     return options;
   }
   [[nodiscard]] const TextureDesc& desc(std::size_t texture) const {
@@ -236,7 +236,7 @@ void print_first(const Options& o, const std::string& scene) {
       options.size = o.size;
       options.shape.side = side;
       options.form = form;
-      options.warmup = 1;
+      options.gather.warmup = 1;
       Case c(o, scene, Motion::scene, options);
       c.server.update(o.start);
       Stream stream(c);
@@ -284,7 +284,7 @@ void print_updates(const Options& o, const std::string& scene, float size, Motio
                    bool anew) {
   voxels::VoxelOptions options;
   options.size = size;
-  options.anew = anew;
+  options.gather.anew = anew;
   Case c(o, scene, motion, options);
   Stream stream(c);
   c.server.update(o.start);

@@ -1,6 +1,5 @@
 // The traced volume: same bits whatever the threads, frozen scenes, classification, guard bands.
 #include "ddgi/client_renderer.h"
-#include "ddgi/probe_client_light.h"
 #include "ddgi/rays.h"
 #include "ddgi/scenes.h"
 #include "rooms.h"
@@ -206,7 +205,13 @@ TEST(Client, SameTexelsSamePicture) {
     ProbeField field(traced.volume.shape());
     field.set_visibility(textures);
     field.set_color(textures);
-    ProbeClientLight light(field);
+    struct FieldLight final : ClientLight {
+      explicit FieldLight(const ProbeField& of) : field(of) {}
+      [[nodiscard]] Vec3 irradiance(const SeenSurface& seen) const override {
+        return field.irradiance(seen.surface.position, seen.surface.normal, seen.to_viewer);
+      }
+      const ProbeField& field;
+    } light(field);
     return render(traced.rays, &light, {.eye = {0, 0, 6}, .target = {0, 0, 0}},
                   {.width = 64, .height = 48, .samples = 1}, traced.pool)
         .pixels;

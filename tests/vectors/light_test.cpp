@@ -27,7 +27,7 @@ test::Held served(bool floats) {
   VectorOptions options;
   options.grid = {7, 4, 9};
   options.box = scene.volume;
-  options.rays = 32;
+  options.gather.rays = 32;
   options.floats = floats;
   VectorServer server(scene, options, 2, {});
   server.update(1);

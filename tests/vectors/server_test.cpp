@@ -160,7 +160,7 @@ TEST(VectorServer, FollowsWhatMovesAndTheSeed) {
   const ddgi::Scene scene = ddgi::test::busy_room();
   const VectorOptions options = few(scene);
   VectorOptions other = options;
-  other.seed = 2;
+  other.gather.seed = 2;
   EXPECT_NE(traced(scene, options, 2, {0}), traced(scene, options, 2, {2}));
   EXPECT_NE(traced(scene, options, 2, {0}), traced(scene, other, 2, {0}));
   EXPECT_NE(traced(scene, options, 2, {0}), traced(scene, few(scene, {"rays-turned=1"}), 2, {0}));
@@ -193,8 +193,8 @@ TEST(VectorSettings, SayWhereVerticesAre) {
   EXPECT_EQ(usual.grid, (Grid{16, 16, 16}));
   EXPECT_EQ(usual.box.lo, scene.volume.lo);
   EXPECT_EQ(usual.box.hi, scene.volume.hi);
-  EXPECT_EQ(usual.seed, 7U);
-  EXPECT_FALSE(usual.floats || usual.turned || usual.anew);
+  EXPECT_EQ(usual.gather.seed, 7U);
+  EXPECT_FALSE(usual.floats || usual.gather.turned || usual.gather.anew);
   const VectorOptions options = options_of(
       settings({"vertices=4x2x256", "box=-1,0.5,-2e1,1,3,4", "form=floats", "rays=6"}), scene, 1);
   EXPECT_EQ(options.grid, (Grid{4, 2, 256}));

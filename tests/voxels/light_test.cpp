@@ -13,8 +13,8 @@ VoxelOptions few(const ddgi::Scene& scene, VoxelForm form) {
   VoxelOptions options;
   options.size = 1;
   options.form = form;
-  options.rays = 4;
-  options.warmup = 1;
+  options.gather.rays = 4;
+  options.gather.warmup = 1;
   options.box = scene.bounds();
   return options;
 }

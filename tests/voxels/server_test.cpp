@@ -134,7 +134,7 @@ TEST(VoxelServer, FollowsWhatMovesTheSeedAndTheRays) {
   EXPECT_NE(usual.first, at(options, 3).first) << "voxels of the ball";
   EXPECT_NE(usual.second, at(options, 3).second);
   VoxelOptions other = options;
-  other.seed = 2;
+  other.gather.seed = 2;
   EXPECT_EQ(usual.first, at(other, 0).first);
   EXPECT_NE(usual.second, at(other, 0).second);
   EXPECT_NE(usual.second, at(few(scene, {"rays-turned=1"}), 0).second);
@@ -204,10 +204,10 @@ TEST(VoxelSettings, SayWhatIsTraced) {
   EXPECT_EQ(usual.shape.side, 4U);
   EXPECT_EQ(usual.form, VoxelForm::shared_exponent);
   EXPECT_EQ(usual.slots, 0U);
-  EXPECT_EQ(usual.rays, 16U);
-  EXPECT_EQ(usual.warmup, 3U);
-  EXPECT_EQ(usual.seed, 7U);
-  EXPECT_FALSE(usual.turned || usual.anew || usual.all_directions);
+  EXPECT_EQ(usual.gather.rays, 16U);
+  EXPECT_EQ(usual.gather.warmup, 3U);
+  EXPECT_EQ(usual.gather.seed, 7U);
+  EXPECT_FALSE(usual.gather.turned || usual.gather.anew || usual.all_directions);
   EXPECT_EQ(usual.box.lo, scene.volume.lo - (Vec3{1, 1, 1}));
   const VoxelOptions options =
       options_of(settings({"size=2", "brick=8", "form=halves", "bricks=77"}), scene, 1);

@@ -19,7 +19,7 @@ constexpr std::array<Setting, 8> kSettings{{
     {"outside", "0",
      "1: also on what stands still outside of the scene's volume and a metre around it"},
     {"rays", "64", "of a point, 1 to 4096"},
-    {"rays-anew", "0", "1: others in each update, which makes noise"},
+    kinds::kRaysAnew,
     {"distance", "0.6", "metres up to which surfaces occlude, 0.001 to 1000"},
     {"threshold", "4", "changes of AO up to this are not sent, in 1/255, 0 to 255"},
     {"view-margin", "180",

@@ -104,20 +104,6 @@ std::string no_dump(const ContainerDescription& description, const TextureEntry&
   return "";
 }
 
-std::string no_probes(const ContainerDescription& description, const TextureEntry& texture) {
-  const std::uint8_t kind = description.volumes[texture.volume].kind;
-  if (is_drawn_alone(description.volumes[texture.volume])) {
-    return fmt::format("volume {} is of kind {}, which is drawn only from a file, not from a pipe",
-                       volume_name(description, texture.volume), kind_text(kind));
-  }
-  const std::string why = no_dump(description, texture);
-  if (!why.empty() || kind == kKindProbes) return why;
-  return fmt::format(
-      "volume {} is of kind {}, which is not drawn; \"gicodec preview\" shows it, \"gicodec "
-      "decode\" makes dumps of it",
-      volume_name(description, texture.volume), kind_text(kind));
-}
-
 std::string record_text(const Record& record) {
   if (const FormatInfo* known = find_format(record.format)) return std::string(known->name);
   std::string text = fmt::format("{} bytes:", record.bytes);

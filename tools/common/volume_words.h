@@ -29,9 +29,6 @@ namespace gicodec::tools {
 /// Why a texture cannot become a dump, with its volume and a hint; empty if it can.
 [[nodiscard]] std::string no_dump(const ContainerDescription& description,
                                   const TextureEntry& texture);
-/// The same for programs that draw and replay only probes.
-[[nodiscard]] std::string no_probes(const ContainerDescription& description,
-                                    const TextureEntry& texture);
 /// "R16G16_SFLOAT", or for a record that an application defines "16 bytes: a 32 sfloat, b 96
 /// opaque".
 [[nodiscard]] std::string record_text(const Record& record);

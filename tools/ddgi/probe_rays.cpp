@@ -1,5 +1,6 @@
 #include "probe_rays.h"
 
+#include "gather.h"
 #include "lighting.h"
 
 #include <array>
@@ -8,29 +9,19 @@ namespace gicodec::ddgi {
 
 void trace_probe(const RayScene& scene, Vec3 position, std::span<const Vec3> directions,
                  std::span<ProbeRay> out, RayCount& count) {
-  const float spread = std::sqrt(4 * kPi / static_cast<float>(directions.size()));
-  for (std::size_t i = 0; i < directions.size(); ++i) {
-    const Vec3 d = directions[i];
-    ProbeRay ray;
-    ++count.probe;
-    const auto hit = scene.intersect(position, d, spread);
-    if (!hit) {
-      ray.distance = 1e30F;
-      ray.direct = scene.state().sky.radiance(d);
-    } else if (hit->back) {
-      ray.end = RayEnd::back;
-      ray.distance = hit->distance;
-    } else {
-      ray.end = RayEnd::front;
-      ray.distance = hit->distance;
-      ray.albedo = hit->albedo;
-      ray.position = hit->position;
-      ray.normal = hit->normal;
-      ray.direct = hit->emission + hit->albedo * direct_light(scene, *hit, count.shadow);
-    }
-    ray.radiance = ray.direct;
-    out[i] = ray;
-  }
+  const auto light = [&](const Surface& hit) { return direct_light(scene, hit, count.shadow); };
+  gather(scene, position, directions, 4 * kPi, count.probe, light,
+         [&](std::size_t i, Vec3 radiance, const Surface* hit) {
+           ProbeRay& ray = out[i] = {};
+           ray.direct = ray.radiance = radiance;
+           ray.distance = hit == nullptr ? 1e30F : hit->distance;
+           if (hit == nullptr) return;
+           ray.end = hit->back ? RayEnd::back : RayEnd::front;
+           if (hit->back) return;
+           ray.albedo = hit->albedo;
+           ray.position = hit->position;
+           ray.normal = hit->normal;
+         });
 }
 
 void find_cages(const ProbeField& field, std::span<const Vec3> directions,

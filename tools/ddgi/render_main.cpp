@@ -8,8 +8,6 @@
 #include "kinds/kind_flags.h"
 #include "kinds/stored_volume.h"
 #include "picture.h"
-#include "probe_client_light.h"
-#include "probe_source.h"
 #include "program.h"
 #include "scene_id.h"
 #include "scene_source.h"
@@ -25,6 +23,8 @@ namespace {
 
 using namespace gicodec;
 using namespace gicodec::ddgi;
+using kinds::FrameFacts;
+using kinds::StoredVolume;
 using tools::Exit;
 using tools::fail;
 
@@ -45,7 +45,7 @@ struct Options {
 void add_flags(tools::Command& app, Options& o) {
   add_scene_flags(app, o.scene);
   app.add_option("--stream", o.stream,
-                 "Container with probes, or with another kind of light; - for standard input")
+                 "Container whose first volume of light is drawn; - for standard input")
       ->type_name("FILE");
   app.add_option("--dumps", o.dumps, "Folder with the probe textures as dumps")->type_name("DIR");
   app.add_option(
@@ -81,24 +81,25 @@ void add_flags(tools::Command& app, Options& o) {
       ->show_default();
   app.add_option("--threads", o.threads, "Threads to use; default: one per processor")
       ->allow(tools::in_range(1, 256));
-  tools::add_memory_flag(app, o.decoding,
-                         "; drawing other light than probes may take as much again");
+  tools::add_memory_flag(app, o.decoding, "; drawing may take as much again");
   kinds::add_drawing_flag(app, o.drawing);
   app.add_flag("-q,--quiet", o.quiet, "Nothing but errors");
 }
 
-/// Draws pictures from probe frames of one scene.
+/// Draws pictures of one scene at one time.
 class Client {
  public:
   Client(const Options& options, Scene scene)
       : options_(options), scene_(std::move(scene)), pool_(options.threads), rays_(scene_) {}
 
-  void place(const Options& o, const ProbeFrame* frame) {
-    double time = frame && frame->time ? *frame->time : static_cast<double>(o.frame) / 10;
-    if (o.time) time = *o.time;
-    if (frame && !frame->time && !o.time && !o.quiet) {
+  /// At the time that `shown` tells, if it is not nullptr.
+  void place(const StoredVolume* shown) {
+    const Options& o = options_;
+    const auto told = shown == nullptr ? std::nullopt : shown->facts_at(o.frame).time;
+    const double time = o.time.value_or(told.value_or(static_cast<double>(o.frame) / 10));
+    if (shown != nullptr && !told && !o.time && !o.quiet) {
       tools::print(stderr, "gi-render: {}: does not say when; drawn as at {} s; --time sets it\n",
-                   frame->source, time);
+                   shown->source(), time);
     }
     rays_.set_state(scene_.state_at(time));
     camera_ = scene_.camera_at(time);
@@ -116,20 +117,20 @@ class Client {
     if (o.exposure) camera_.exposure = *o.exposure;
   }
 
-  [[nodiscard]] Picture draw(const ProbeFrame* frame, const RenderOptions& render_options) {
-    if (frame == nullptr) return render(rays_, nullptr, camera_, render_options, pool_);
-    ProbeField field(shape_of(*frame));
-    field.set_visibility(frame->textures);
-    field.set_color(frame->textures);
-    ProbeClientLight light(field);
-    return render(rays_, &light, camera_, render_options, pool_);
+  /// Lit by `shown`; by direct light only where that is nullptr.
+  [[nodiscard]] Picture draw(StoredVolume* shown, const RenderOptions& render_options) {
+    std::unique_ptr<kinds::VolumeLight> light;
+    if (shown != nullptr && render_options.mode != RenderMode::direct) {
+      if (shown->kind().name == "probes") place_probes(*shown);
+      light = kinds::make_light(shown->kind(), rays_, shown->desc(),
+                                {options_.decoding.memory, options_.drawing.set});
+      shown->show(options_.frame, *light);
+    }
+    Picture picture = render(rays_, light.get(), camera_, render_options, pool_);
+    check_interrupt();
+    return picture;
   }
 
-  [[nodiscard]] Picture draw(ClientLight* light, const RenderOptions& render_options) {
-    return render(rays_, light, camera_, render_options, pool_);
-  }
-
-  [[nodiscard]] const RayScene& scene() const { return rays_; }
   [[nodiscard]] float exposure() const { return camera_.exposure; }
 
   /// Says why a picture is black, if it is, and what helps.
@@ -159,19 +160,21 @@ class Client {
   }
 
  private:
-  /// Where the volume stands, by its attributes or by the scene; it has to fit the scene.
-  [[nodiscard]] VolumeShape shape_of(const ProbeFrame& frame) const {
-    const Grid grid = frame.textures.color_desc.grid;
+  /// Where probes stand, by flags, files or the scene; they have to be in it.
+  void place_probes(StoredVolume& shown) const {
+    const Grid grid = shown.desc().groups.front().textures.front().desc.grid;
     SceneFlags flags = options_.scene;
     if (!flags.grid.empty() && tools::grid_from_string(flags.grid) != grid) {
-      fail(Exit::bad_input, "{}: its grid is {}, not {}; leave out --grid", frame.source,
+      fail(Exit::bad_input, "{}: its grid is {}, not {}; leave out --grid", shown.source(),
            tools::to_string(grid), flags.grid);
     }
     flags.grid = tools::to_string(grid);
     VolumeShape shape = volume_of(flags, scene_);
-    if (flags.bounds.empty() && frame.origin && frame.spacing) {
-      shape.origin = *frame.origin;
-      shape.spacing = *frame.spacing;
+    const FrameFacts facts = shown.facts_at(options_.frame);
+    if (flags.bounds.empty() && facts.origin && facts.spacing) {
+      const auto vec = [](const Position& p) { return Vec3{p[0], p[1], p[2]}; };
+      shape.origin = vec(*facts.origin);
+      shape.spacing = vec(*facts.spacing);
     }
     const Box box = scene_.bounds();
     const Vec3 last = shape.position(shape.probes() - 1);
@@ -180,10 +183,11 @@ class Client {
         outside(shape.origin.x, last.x, box.lo.x, box.hi.x) ||
         outside(shape.origin.y, last.y, box.lo.y, box.hi.y) ||
         outside(shape.origin.z, last.z, box.lo.z, box.hi.z)) {
-      fail(Exit::bad_input, "{}: its volume lies outside of {}; {}", frame.source, scene_.name,
+      fail(Exit::bad_input, "{}: its volume lies outside of {}; {}", shown.source(), scene_.name,
            flags.bounds.empty() ? "was it traced in another scene?" : "leave out --bounds");
     }
-    return shape;
+    const auto position = [](Vec3 v) { return Position{v.x, v.y, v.z}; };
+    shown.place({grid, position(shape.origin), position(shape.spacing), {}});
   }
 
   const Options& options_;
@@ -225,29 +229,34 @@ void check_usage(const Options& o) {
   if (!o.output.empty()) check_picture_name(o.output);
 }
 
-/// The scene of the flags, else the one that the textures' attributes name.
-Scene find_scene(const SceneFlags& flags, const ProbeFrame* frame) {
+/// The scene of the flags, else the one that `shown` tells, which is not to be another.
+Scene find_scene(const SceneFlags& flags, const StoredVolume* shown, const FrameFacts& facts) {
   SceneFlags used = flags;
   const bool told = !flags.scene.empty() || !flags.gltf.empty();
-  if (frame && frame->scene && !(told && *frame->scene == scene_label(flags))) {
-    const bool built_in = is_built_in(*frame->scene);
+  if (facts.scene && !(told && *facts.scene == scene_label(flags))) {
+    const bool built_in = is_built_in(*facts.scene);
     if (told)
-      fail(Exit::bad_input, "{}: was traced in {}, not in {}; {}", frame->source, *frame->scene,
+      fail(Exit::bad_input, "{}: was traced in {}, not in {}; {}", shown->source(), *facts.scene,
            scene_label(flags),
            built_in ? "leave out --scene and --gltf" : "name that file by --gltf FILE");
     if (!built_in)
       fail(Exit::usage,
            "{}: was traced in {}, which is no built-in scene; name that file by "
            "--gltf FILE",
-           frame->source, *frame->scene);
-    used.scene = *frame->scene;
-  } else if (frame && !frame->scene && !told) {
+           shown->source(), *facts.scene);
+    used.scene = *facts.scene;
+  } else if (shown != nullptr && !facts.scene && !told) {
     fail(Exit::usage,
          "{}: does not say in which scene it was traced; --scene NAME or --gltf FILE "
          "is needed",
-         frame->source);
+         shown->source());
   }
-  return load_scene(used);
+  Scene scene = load_scene(used);
+  const std::uint64_t triangles = shown == nullptr ? 0 : shown->triangles();
+  if (triangles != 0 && triangles != scene_id(scene_label(used), scene).geometry)
+    fail(Exit::bad_input, "{}: was traced in a scene of other triangles than {}", shown->source(),
+         scene.name);
+  return scene;
 }
 
 /// Refuses a picture that would destroy something, before any work is done.
@@ -262,69 +271,33 @@ void check_picture(const Options& o) {
   check_output(o.output, inputs, tools::overwrite_if(o.overwrite));
 }
 
-/// Of another kind than probes.
-Exit run_kind(const Options& o, const RenderOptions& options) {
-  if (o.compare || o.mode == "difference" || !o.dumps.empty())
-    fail(Exit::usage, "{}: holds no probes, which alone are compared with dumps", o.stream);
-  kinds::StoredVolume stored(o.stream, o.allow_incomplete, o.decoding);
-  if (!stored.missing().empty()) tools::print(stderr, "gi-render: {}\n", stored.missing());
-  ProbeFrame facts;  // Without textures: where and when it was traced.
-  facts.source = o.stream;
-  facts.time = stored.time_of(o.frame);
-  if (!stored.scene().name.empty()) facts.scene = stored.scene().name;
-  Scene scene = find_scene(o.scene, &facts);
-  check_output(o.output, tools::InputFiles(scene.files), tools::overwrite_if(o.overwrite));
-  const SceneId own = scene_id(scene_label(o.scene), scene);
-  if (stored.scene().geometry != 0 && stored.scene().geometry != own.geometry)
-    fail(Exit::bad_input, "{}: was traced in a scene of other triangles than {}", o.stream,
-         scene.name);
-  Client client(o, std::move(scene));
-  client.place(o, &facts);
-  std::unique_ptr<ClientLight> light;
-  if (o.mode != "direct") {
-    auto held = kinds::make_light(stored.kind(), client.scene(), stored.desc(),
-                                  {o.decoding.memory, o.drawing.set});
-    stored.show(o.frame, *held);
-    light = std::move(held);
-  }
-  const Picture picture = client.draw(light.get(), options);
-  check_interrupt();
-  if (!o.quiet) client.explain(o.output, picture);
-  write_picture(o.output, picture, client.exposure(), tools::overwrite_if(o.overwrite));
-  return Exit::ok;
-}
-
 Exit run(const Options& o) {
   check_usage(o);
   check_picture(o);
   const RenderOptions options = render_options(o);
-  if (!o.stream.empty() && kinds::StoredVolume::is_in(o.stream)) return run_kind(o, options);
-  if (!o.drawing.set.empty()) fail(Exit::usage, "--set is for other light than probes");
-  std::optional<ProbeFrame> decoded, original;
-  if (!o.stream.empty()) decoded = load_stream(o.stream, o.frame, o.allow_incomplete, o.decoding);
-  if (decoded && !decoded->missing.empty()) {
-    tools::print(stderr, "gi-render: {}\n", decoded->missing);
-  }
-  if (decoded && !decoded->loss.empty() && !o.quiet) {
-    tools::print(stderr, "gi-render: {}: {}\n", o.stream, decoded->loss);
-  }
-  if (!o.dumps.empty()) original = load_dumps(o.dumps, o.frame);
-  const ProbeFrame* frame = decoded ? &*decoded : original ? &*original : nullptr;
+  std::optional<StoredVolume> stream, dumps;
+  if (!o.stream.empty()) stream.emplace(o.stream, o.allow_incomplete, o.decoding);
+  if (stream && !o.dumps.empty() && stream->kind().name != "probes")
+    fail(Exit::usage, "{}: holds no probes, which alone are compared with dumps", o.stream);
+  if (!o.dumps.empty()) dumps.emplace(o.dumps, o.frame);
+  StoredVolume* const shown = stream ? &*stream : dumps ? &*dumps : nullptr;
 
-  Scene scene = find_scene(o.scene, frame);
+  Scene scene = find_scene(o.scene, shown, shown ? shown->facts_at(o.frame) : FrameFacts{});
   if (!o.output.empty())
     check_output(o.output, tools::InputFiles(scene.files), tools::overwrite_if(o.overwrite));
   Client client(o, std::move(scene));
-  client.place(o, frame);
-  const Picture picture = client.draw(frame, options);
-  check_interrupt();
+  client.place(shown);
+  const Picture picture = client.draw(shown, options);
+  if (stream && !stream->missing().empty())
+    tools::print(stderr, "gi-render: {}\n", stream->missing());
+  if (stream && !stream->loss().empty() && !o.quiet)
+    tools::print(stderr, "gi-render: {}: {}\n", o.stream, stream->loss());
   if (!o.quiet) client.explain(o.output.empty() ? "the picture" : o.output, picture);
-  if (!decoded || !original) {
+  if (!stream || !dumps) {
     write_picture(o.output, picture, client.exposure(), tools::overwrite_if(o.overwrite));
     return Exit::ok;
   }
-  const Picture reference = client.draw(&*original, options);
-  check_interrupt();
+  const Picture reference = client.draw(&*dumps, options);
   const PictureDifference found = compare(picture, reference, client.exposure());
   if (!o.output.empty()) {
     write_picture(o.output,

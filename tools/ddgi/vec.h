@@ -120,4 +120,10 @@ struct Box {
   [[nodiscard]] constexpr Vec3 center() const { return (lo + hi) * 0.5F; }
 };
 
+/// +x, −x, +y, −y, +z, −z.
+[[nodiscard]] constexpr Vec3 axis_of(std::size_t direction) {
+  const float sign = direction % 2 == 0 ? 1.0F : -1.0F;
+  return direction < 2 ? Vec3{sign, 0, 0} : direction < 4 ? Vec3{0, sign, 0} : Vec3{0, 0, sign};
+}
+
 }  // namespace gicodec::ddgi

@@ -80,6 +80,15 @@ std::size_t Settings::choice(std::string_view name,
   fail(Exit::usage, "{}{}: expected one of {}, not \"{}\"", flag_, name, names, value);
 }
 
+ddgi::GatherOptions gather_options(const Settings& settings, std::uint32_t least,
+                                   std::uint32_t most, std::uint32_t seed) {
+  return {.rays = settings.whole("rays", least, most),
+          .turned = settings.whole("rays-turned", 0, 1) == 1,
+          .anew = settings.whole("rays-anew", 0, 1) == 1,
+          .warmup = settings.whole("warmup", 0, 100),
+          .seed = seed};
+}
+
 std::string help_of(std::span<const Setting> known) {
   std::string text;
   for (const Setting& setting : known) {

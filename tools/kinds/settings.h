@@ -1,6 +1,8 @@
 // What a kind can be told on the command line: --set NAME=VALUE.
 #pragma once
 
+#include "ddgi/gather.h"
+
 #include <cstdint>
 #include <map>
 #include <span>
@@ -39,6 +41,16 @@ class Settings {
   std::map<std::string, std::string, std::less<>> values_;
   std::string flag_;
 };
+
+// Of kinds that gather light along rays.
+[[nodiscard]] constexpr Setting rays_turned(std::string_view usual) {
+  return {"rays-turned", usual, "1: each point has them turned otherwise, 0: all have the same"};
+}
+inline constexpr Setting kRaysAnew{"rays-anew", "0", "1: other rays with every update"};
+inline constexpr Setting kWarmup{"warmup", "3", "bounces before the first update, 0 to 100"};
+/// By these, and "rays" in that range. Throws tools::Error of Exit::usage.
+[[nodiscard]] ddgi::GatherOptions gather_options(const Settings& settings, std::uint32_t least,
+                                                 std::uint32_t most, std::uint32_t seed);
 
 /// A line for each, for --help.
 [[nodiscard]] std::string help_of(std::span<const Setting> known);

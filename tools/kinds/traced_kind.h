@@ -41,6 +41,8 @@ struct TracedKind {
   bool culled = false;
   /// Its settings are flags of their own: --NAME VALUE rather than --set NAME=VALUE.
   bool flags = false;
+  /// What its light shows depends on the updates before the last, too.
+  bool remembers = false;
 };
 
 /// How light is drawn with: what --max-memory and --set say.

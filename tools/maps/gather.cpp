@@ -1,7 +1,6 @@
 #include "gather.h"
 
 #include "ddgi/lighting.h"
-#include "ddgi/noise.h"
 #include "kinds/tracing.h"
 
 #include <array>
@@ -109,31 +108,32 @@ void gather(const Parameterisation& map, const RayScene& scene, std::span<const 
             std::span<const Vec3> lit, std::span<const std::uint8_t> exists,
             const GatherOptions& options, std::uint32_t update, ThreadPool& pool,
             std::span<Vec3> out, GatherCount& count) {
-  const std::uint32_t seed = hash(options.seed, options.anew ? update : 0);
+  const std::uint32_t seed = options.seed_of(update);
   const auto n = static_cast<float>(options.rays);
-  const float spread = std::sqrt(2 * kPi / n);
   std::atomic<std::uint64_t> rays{0};
   kinds::for_all(at.size(), pool, [&](std::size_t i) {
     const MapPoint point = point_of(map, scene, at[i]);
     const std::uint32_t turn = hash(options.turned ? at[i].place : 0, seed);
     const float first = unit(turn), second = unit(hash(turn));
+    thread_local std::vector<Vec3> directions;
+    directions.resize(options.rays);
+    for (std::uint32_t ray = 0; ray < options.rays; ++ray) {
+      directions[ray] = kinds::cosine_direction(
+          point.normal, wrapped((static_cast<float>(ray) + 0.5F) / n + first),
+          wrapped(radical_inverse(ray) + second));
+    }
+    const auto light = [&](const Surface& hit) { return blend(map.taps(hit), lit, exists); };
     Vec3 sum;
-    std::uint32_t met = 0;
+    std::uint64_t mine = 0;
+    std::size_t met = 0;
     for (const Vec3 origin : origins_of(map, point)) {
-      sum = {}, met = 0;
-      rays += options.rays;
-      for (std::uint32_t ray = 0; ray < options.rays; ++ray) {
-        const Vec3 d = kinds::cosine_direction(
-            point.normal, wrapped((static_cast<float>(ray) + 0.5F) / n + first),
-            wrapped(radical_inverse(ray) + second));
-        const auto hit = scene.intersect(origin, d, spread);
-        if (hit && hit->back) continue;
-        ++met;
-        sum += hit ? hit->emission + hit->albedo * blend(map.taps(*hit), lit, exists)
-                   : scene.state().sky.radiance(d);
-      }
+      sum = {};
+      met = options.rays -
+            ddgi::gather(scene, origin, directions, 2 * kPi, mine, light,
+                         [&](std::size_t, Vec3 radiance, const Surface*) { sum += radiance; });
       if (kProbes * met > (kProbes - kBuried) * options.rays) break;
     }
+    rays += mine;
     out[i] = met > 0 ? sum / static_cast<float>(met) : Vec3{};
   });
   count.rays += rays;

@@ -4,6 +4,7 @@
 
 #include "parameterisation.h"
 
+#include "ddgi/gather.h"
 #include "ddgi/parallel.h"
 
 #include <cstdint>
@@ -19,13 +20,6 @@ struct MapPoint {
 /// A little inside of its triangle, so that it is not in the wall that the triangle meets.
 [[nodiscard]] MapPoint point_of(const Parameterisation& map, const ddgi::RayScene& scene,
                                 const MapTexel& texel);
-
-struct GatherOptions {
-  std::uint32_t rays = 64;  ///< per texel
-  bool turned = true;       ///< each texel has the rays turned by chance, or all have the same
-  bool anew = false;        ///< turned otherwise at every update
-  std::uint32_t seed = 1;
-};
 
 struct GatherCount {
   std::uint64_t rays = 0, shadow_rays = 0;
@@ -47,7 +41,7 @@ void light_directly(const Parameterisation& map, const ddgi::RayScene& scene,
 /// texels that exist. Insides count as nothing met. The same for any number of threads.
 void gather(const Parameterisation& map, const ddgi::RayScene& scene, std::span<const MapTexel> at,
             std::span<const Vec3> lit, std::span<const std::uint8_t> exists,
-            const GatherOptions& options, std::uint32_t update, ddgi::ThreadPool& pool,
+            const ddgi::GatherOptions& options, std::uint32_t update, ddgi::ThreadPool& pool,
             std::span<Vec3> out, GatherCount& count);
 
 }  // namespace gicodec::maps

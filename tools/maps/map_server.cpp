@@ -38,7 +38,7 @@ MapServer::MapServer(const ddgi::Scene& scene, const MapOptions& options, unsign
 }
 
 void MapServer::update(double time) {
-  for (; updates_ < options_.warmup; ++updates_) step(time);
+  for (; updates_ < options_.gather.warmup; ++updates_) step(time);
   step(time);
   ++updates_;
   if (video_) video_->add(texels_, values_);

@@ -23,10 +23,10 @@ constexpr std::array kSettings{
     Setting{"bases", "30000", "about how many, 1 to 65536"},
     Setting{"spacing", "0", "metres between bases, 0 to 100; 0: by how many they are"},
     Setting{"rays", "0", "per texel or basis, 0 to 65536; 0: 64 per texel, 256 per basis"},
-    Setting{"rays-turned", "1", "0: the same rays from all texels or bases"},
-    Setting{"rays-anew", "0", "1: other rays with every update"},
+    kinds::rays_turned("1"),
+    kinds::kRaysAnew,
     Setting{"qp", "24", "of video: its quantiser, 0 to 51"},
-    Setting{"warmup", "3", "bounces before the first update, 0 to 100"}};
+    kinds::kWarmup};
 
 constexpr std::uint32_t kVideoPages = 8192, kVideoFrames = 64;  // of a ring
 constexpr std::array<std::string_view, 3> kWays{"map", "bases", "video"};
@@ -82,13 +82,14 @@ std::uint64_t light_memory(const VolumeDesc& desc, std::uint64_t textures) {
 }  // namespace
 
 constinit const kinds::TracedKind kTracedMaps{
-    "irradiance_maps",
-    "light maps over a scene's surfaces, or bases of them",
-    kSettings,
-    {},
-    trace,
-    light,
-    light_memory};
+    .name = "irradiance_maps",
+    .summary = "light maps over a scene's surfaces, or bases of them",
+    .settings = kSettings,
+    .drawing = {},
+    .trace = trace,
+    .light = light,
+    .light_memory = light_memory,
+    .remembers = true};
 
 std::vector<std::vector<std::array<Vec2, 3>>> second_uvs(const ddgi::Scene& scene,
                                                          std::uint32_t size) {
@@ -118,12 +119,8 @@ MapOptions options_of(const kinds::Settings& settings, std::uint32_t seed) {
   options.qp = static_cast<int>(settings.whole("qp", 0, 51));
   options.bases = settings.whole("bases", 1, kMaxMapBases);
   options.spacing = static_cast<float>(settings.number("spacing", 0, 100));
-  options.gather.rays = settings.whole("rays", 0, 65536);
+  options.gather = kinds::gather_options(settings, 0, 65536, seed);
   if (options.gather.rays == 0) options.gather.rays = options.by_bases ? 256 : 64;
-  options.gather.anew = settings.whole("rays-anew", 0, 1) == 1;
-  options.gather.turned = settings.whole("rays-turned", 0, 1) == 1;
-  options.gather.seed = seed;
-  options.warmup = settings.whole("warmup", 0, 100);
   return options;
 }
 

@@ -25,9 +25,8 @@ struct MapOptions {
   bool by_bases = false;    ///< gathers once per basis, not at every texel
   std::uint32_t bases = 0;  ///< of them as many as that
   float spacing = 0;        ///< or so many metres apart; 0: by their number
-  GatherOptions gather;
-  int qp = 24;               ///< of video
-  std::uint32_t warmup = 3;  ///< updates before the first one, so that light has bounced
+  ddgi::GatherOptions gather;
+  int qp = 24;  ///< of video
 };
 [[nodiscard]] MapOptions options_of(const kinds::Settings& settings, std::uint32_t seed);
 

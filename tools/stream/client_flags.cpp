@@ -37,10 +37,9 @@ void add_client_flags(tools::Command& app, ClientFlags& o) {
   app.add_option("--budget-bytes", o.viewer.client.budget.bytes,
                  "Bytes per update, at most; 0: no limit")
       ->allow(tools::in_range(0, kMax));
-  app.add_option(
-         "--max-memory", o.memory,
-         "MiB that decoding may take, and drawing other light than probes; a server may ask "
-         "for much")
+  app.add_option("--max-memory", o.memory,
+                 "MiB that decoding may take, and drawing; a server may ask "
+                 "for much")
       ->allow(tools::in_range(1, 1 << 24))
       ->show_default()
       ->type_name("MIB");

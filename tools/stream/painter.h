@@ -2,7 +2,6 @@
 #pragma once
 
 #include "ddgi/client_renderer.h"
-#include "ddgi/probe_field.h"
 #include "kinds/traced_kind.h"
 #include "picture_folder.h"
 
@@ -14,7 +13,7 @@ namespace gicodec::streaming {
 
 class Painter {
  public:
-  /// `scene` may be nullptr, must outlive it. `drawing`: of light of other kinds than probes.
+  /// `scene` may be nullptr, must outlive it. `drawing`: how light is drawn with.
   Painter(const ddgi::Scene* scene, const ddgi::RenderOptions& options, unsigned threads,
           PictureFolder pictures, kinds::DrawingFlags drawing);
   ~Painter();
@@ -26,8 +25,8 @@ class Painter {
 
  private:
   double draw_scene(const ClientFrame& frame, const ddgi::Camera& camera, std::uint32_t number);
-  ddgi::Picture draw_probes(const ClientFrame& frame, const ddgi::Camera& camera);
-  ddgi::Picture draw_volume(const ClientVolume& volume, double time, const ddgi::Camera& camera);
+  /// That of the volume, if it is another than before.
+  void prepare_light(const ClientVolume& volume);
 
   const ddgi::Scene* scene_;
   ddgi::RenderOptions options_;
@@ -35,12 +34,8 @@ class Painter {
   kinds::DrawingFlags drawing_;
   ddgi::ThreadPool pool_;
   std::unique_ptr<ddgi::RayScene> rays_;
-  std::unique_ptr<kinds::VolumeLight> light_;  ///< of another kind than probes
-  std::uint64_t instance_ = 0;                 ///< of the volume that it is of
+  std::unique_ptr<kinds::VolumeLight> light_;
+  std::uint64_t instance_ = 0;  ///< of the volume that it is of
 };
-
-/// Light from a volume as it stands in the world; probes that were not received do not shine.
-/// Throws tools::Error of Exit::bad_input for a volume without irradiance and visibility.
-[[nodiscard]] ddgi::ProbeField probe_field(const ClientVolume& volume);
 
 }  // namespace gicodec::streaming

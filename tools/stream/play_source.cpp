@@ -4,13 +4,13 @@
 #include "common/container_input.h"
 #include "common/stored_texture.h"
 #include "common/volume_words.h"
-#include "ddgi/probe_source.h"
 #include "ddgi/scene_id.h"
 #include "dump/dump.h"
 #include "dump/error.h"
 #include "dump/geometry_attributes.h"
 #include "dump/sequence.h"
 #include "kinds/source_container.h"
+#include "kinds/stored_volume.h"
 #include "log.h"
 #include "recording.h"
 
@@ -37,8 +37,8 @@ struct Player {
 
   std::vector<SourceVolume> volumes;             ///< without a place, if none is told
   std::vector<std::vector<std::byte>> textures;  ///< of all volumes
-  ddgi::ProbeFrame facts;  ///< scene, time and place of the frame, as far as they are told
-  Recording recording;     ///< of which no more frames than are whole are played
+  kinds::FrameFacts facts;
+  Recording recording;               ///< of which no more frames than are whole are played
   std::vector<std::string> remarks;  ///< since they were last taken
 };
 
@@ -122,7 +122,7 @@ class RecordingPlayer final : public Player {
       } else {
         input_->follow(played_[i], textures[i]);
       }
-      read_attributes(facts, input_->textures()[played_[i]].info_at(input_->frame()).attributes);
+      facts.read(input_->textures()[played_[i]].info_at(input_->frame()).attributes);
     }
     const ContainerDescription& description = input_->description();
     const auto times = kinds::times_of(description);
@@ -260,7 +260,7 @@ class DumpPlayer final : public Player {
       if (!(dump.info.desc == descs_[i]))
         fail(Exit::bad_input, "{}: is not like the first frame", path);
       textures[i] = std::move(dump.texels);
-      read_attributes(facts, dump.info.attributes);
+      facts.read(dump.info.attributes);
     }
     ++at_;
     return true;
@@ -315,8 +315,8 @@ Source play_source(const std::string& path, const PlayOptions& options) {
   std::vector<std::string> remarks = remarks_on(player->recording, options.allow_incomplete);
   if (!advance(*player, 0)) fail(Exit::bad_input, "{}: has no frame; record it again", path);
   VolumeGeometry& geometry = player->volumes.front().geometry;
-  if (const auto o = player->facts.origin) geometry.origin = {o->x, o->y, o->z};
-  if (const auto s = player->facts.spacing) geometry.spacing = {s->x, s->y, s->z};
+  if (const auto o = player->facts.origin) geometry.origin = *o;
+  if (const auto s = player->facts.spacing) geometry.spacing = *s;
   player->rewind(options.allow_incomplete);
 
   Source source{player->volumes,

@@ -12,11 +12,7 @@ using ddgi::Vec3;
 
 inline constexpr std::size_t kHemispheres = 6;  ///< around +x, −x, +y, −y, +z, −z
 
-/// The middle of a hemisphere.
-[[nodiscard]] constexpr Vec3 axis_of(std::size_t hemisphere) {
-  const float sign = hemisphere % 2 == 0 ? 1.0F : -1.0F;
-  return hemisphere < 2 ? Vec3{sign, 0, 0} : hemisphere < 4 ? Vec3{0, sign, 0} : Vec3{0, 0, sign};
-}
+using ddgi::axis_of;
 
 /// Irradiance vectors of red, green and blue over one hemisphere, divided by π.
 struct Vectors {

@@ -1,7 +1,6 @@
 #include "vector_server.h"
 
 #include "ddgi/lighting.h"
-#include "ddgi/noise.h"
 #include "ddgi/rays.h"
 #include "ddgi/volume.h"
 #include "kinds/tracing.h"
@@ -44,11 +43,11 @@ VectorServer::VectorServer(const Scene& scene, const VectorOptions& options, uns
     : options_(options),
       scene_(scene),
       pool_(threads, std::move(cancelled)),
-      directions_(fibonacci_directions(options.rays)),
+      directions_(fibonacci_directions(options.gather.rays)),
       field_(geometry_of(options.box, options.grid)) {}
 
 void VectorServer::update(double time) {
-  for (; updates_ < options_.warmup; ++updates_) step(time);
+  for (; updates_ < options_.gather.warmup; ++updates_) step(time);
   step(time);
   ++updates_;
 }
@@ -56,7 +55,7 @@ void VectorServer::update(double time) {
 void VectorServer::step(double time) {
   scene_.set_state(scene_.scene().state_at(time));
   VectorField next(field_.geometry);
-  const std::uint32_t seed = hash(options_.seed, options_.anew ? updates_ : 0);
+  const std::uint32_t seed = options_.gather.seed_of(updates_);
   const auto turned = [&](std::uint32_t number) {
     const Affine turn = random_rotation(seed, number);
     std::vector<Vec3> directions = directions_;
@@ -68,8 +67,8 @@ void VectorServer::step(double time) {
   pool_.run(next.vertices.size(), [&](std::size_t i) {
     const auto vertex = static_cast<std::uint32_t>(i);
     std::uint64_t mine = 0;
-    const bool lit = options_.turned ? gather(vertex, turned(vertex), next.vertices[i], mine)
-                                     : gather(vertex, of_all, next.vertices[i], mine);
+    const bool lit = options_.gather.turned ? gather(vertex, turned(vertex), next.vertices[i], mine)
+                                            : gather(vertex, of_all, next.vertices[i], mine);
     next.known[i] = lit ? 1 : 0;
     rays += mine;
   });
@@ -82,26 +81,16 @@ bool VectorServer::gather(std::uint32_t vertex, std::span<const Vec3> directions
   const Position at = block_position(field_.geometry, vertex);
   const Vec3 origin{at[0], at[1], at[2]};
   const auto n = static_cast<float>(directions.size());
-  const float spread = std::sqrt(4 * kPi / n);
+  const auto light = [&](const Surface& hit) {
+    return direct_light(scene_, hit, rays) +
+           field_.irradiance(hit.position, hit.normal, Interpolation::trilinear);
+  };
   Vertex sum{};
-  std::uint32_t behind = 0;
-  for (const Vec3 d : directions) {
-    ++rays;
-    const auto hit = scene_.intersect(origin, d, spread);
-    if (hit && hit->back) {
-      ++behind;
-      continue;
-    }
-    if (!hit) {
-      add(sum, d, scene_.state().sky.radiance(d));
-      continue;
-    }
-    const Vec3 light = direct_light(scene_, *hit, rays) +
-                       field_.irradiance(hit->position, hit->normal, Interpolation::trilinear);
-    add(sum, d, hit->emission + hit->albedo * light);
-  }
-  if (kBuried * behind >= directions.size()) return false;
-  const float share = 4 / (n - static_cast<float>(behind));
+  const std::size_t inside = ddgi::gather(
+      scene_, origin, directions, 4 * kPi, rays, light,
+      [&](std::size_t i, Vec3 radiance, const Surface*) { add(sum, directions[i], radiance); });
+  if (kBuried * inside >= directions.size()) return false;
+  const float share = 4 / (n - static_cast<float>(inside));
   for (std::size_t h = 0; h < kHemispheres; ++h) {
     out[h] = {sum[h].red * share, sum[h].green * share, sum[h].blue * share};
   }

@@ -3,8 +3,8 @@
 
 #include "vector_field.h"
 
+#include "ddgi/gather.h"
 #include "ddgi/parallel.h"
-#include "ddgi/ray_scene.h"
 
 #include <functional>
 
@@ -13,12 +13,8 @@ namespace gicodec::vectors {
 struct VectorOptions {
   Grid grid{16, 16, 16};
   bool floats = false;
-  std::uint32_t rays = 256;  ///< per vertex, over the whole sphere
-  bool turned = false;       ///< each vertex has them turned by chance, or all have the same
-  bool anew = false;         ///< turned otherwise at every update
-  std::uint32_t warmup = 3;  ///< updates before the first one, so that light has bounced
-  ddgi::Box box;             ///< from the first vertex to the last
-  std::uint32_t seed = 1;
+  ddgi::GatherOptions gather;  ///< of vertices, over the whole sphere
+  ddgi::Box box;               ///< from the first vertex to the last
 };
 
 class VectorServer {

@@ -22,9 +22,9 @@ constexpr std::array kSettings{
     Setting{"box", "scene", "from the first vertex to the last: X,Y,Z,X,Y,Z in metres, or scene"},
     Setting{"form", "quantised", "of records: quantised, floats"},
     Setting{"rays", "256", "per vertex, 6 to 65536"},
-    Setting{"rays-turned", "0", "1: each vertex has them turned otherwise"},
-    Setting{"rays-anew", "0", "1: other rays with every update"},
-    Setting{"warmup", "3", "bounces before the first update, 0 to 100"}};
+    kinds::rays_turned("0"),
+    kinds::kRaysAnew,
+    kinds::kWarmup};
 constexpr std::array kDrawing{
     Setting{"interpolation", "trilinear", "between vertices: trilinear, tricubic"},
     Setting{"fill", "smooth",
@@ -143,11 +143,7 @@ VectorOptions options_of(const kinds::Settings& settings, const ddgi::Scene& sce
   options.grid = grid_of(settings.text("vertices"));
   options.box = box_of(settings.text("box"), scene);
   options.floats = settings.choice("form", kForms) == 1;
-  options.rays = settings.whole("rays", 6, 65536);
-  options.turned = settings.whole("rays-turned", 0, 1) == 1;
-  options.anew = settings.whole("rays-anew", 0, 1) == 1;
-  options.warmup = settings.whole("warmup", 0, 100);
-  options.seed = seed;
+  options.gather = kinds::gather_options(settings, 6, 65536, seed);
   return options;
 }
 

@@ -12,11 +12,8 @@ namespace gicodec::voxels {
 
 using ddgi::Vec3;
 
-/// The middle of the hemisphere that light of a direction comes from: +x, −x, +y, −y, +z, −z.
-[[nodiscard]] constexpr Vec3 axis_of(std::size_t direction) {
-  const float sign = direction % 2 == 0 ? 1.0F : -1.0F;
-  return direction < 2 ? Vec3{sign, 0, 0} : direction < 4 ? Vec3{0, sign, 0} : Vec3{0, 0, sign};
-}
+/// The middle of the hemisphere that light of a direction comes from.
+using ddgi::axis_of;
 
 struct Voxel {
   std::array<Vec3, kVoxelDirections> color{};   ///< irradiance over π

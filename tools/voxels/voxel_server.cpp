@@ -1,7 +1,6 @@
 #include "voxel_server.h"
 
 #include "ddgi/lighting.h"
-#include "ddgi/noise.h"
 #include "dump/error.h"
 #include "kinds/tracing.h"
 
@@ -65,7 +64,7 @@ VolumeGeometry VoxelServer::geometry() const {
 }
 
 void VoxelServer::update(double time) {
-  for (; updates_ < options_.warmup; ++updates_) step(time);
+  for (; updates_ < options_.gather.warmup; ++updates_) step(time);
   step(time);
   ++updates_;
 }
@@ -76,11 +75,11 @@ std::vector<Vec3> VoxelServer::directions_of(std::uint32_t seed) const {
   Random random(seed);
   const float shift = random.next(), turn = random.next();
   std::vector<Vec3> directions;
-  for (std::uint32_t i = 0; i < options_.rays; ++i) {
+  for (std::uint32_t i = 0; i < options_.gather.rays; ++i) {
     const auto number = static_cast<float>(i);
-    directions.push_back(
-        kinds::cosine_direction({0, 0, 1}, (number + shift) / static_cast<float>(options_.rays),
-                                fraction(number * kGolden + turn)));
+    directions.push_back(kinds::cosine_direction(
+        {0, 0, 1}, (number + shift) / static_cast<float>(options_.gather.rays),
+        fraction(number * kGolden + turn)));
   }
   return directions;
 }
@@ -91,7 +90,7 @@ void VoxelServer::step(double time) {
   octree_ = grow(keys_of(leaves_), static_cast<unsigned>(octree_.size()));
   std::vector<std::byte>& records = octree_[0].records;
   records.resize(leaves_.size() * code_.bytes());
-  const std::uint32_t seed = hash(options_.seed, options_.anew ? updates_ : 0);
+  const std::uint32_t seed = options_.gather.seed_of(updates_);
   const std::vector<Vec3> of_all = directions_of(seed);
   std::atomic<std::uint64_t> rays{0};
   kinds::for_all(leaves_.size(), threads_, [&](std::size_t i) {
@@ -100,7 +99,7 @@ void VoxelServer::step(double time) {
     // By its place, so that a voxel keeps its directions while others come and go.
     const std::uint32_t own = hash(hash(seed, static_cast<std::uint32_t>(voxel.key)),
                                    static_cast<std::uint32_t>(voxel.key >> 32));
-    code_.store(&records[i * code_.bytes()], options_.turned
+    code_.store(&records[i * code_.bytes()], options_.gather.turned
                                                  ? gather(voxel, directions_of(own), mine)
                                                  : gather(voxel, of_all, mine));
     rays += mine;
@@ -118,7 +117,10 @@ Voxel VoxelServer::gather(const SurfaceVoxel& voxel, std::span<const Vec3> direc
   const auto middle = [&](std::uint32_t c) { return (static_cast<float>(c) + 0.5F) * grid_.size; };
   const Vec3 centre = grid_.origin + Vec3{middle(cell[0]), middle(cell[1]), middle(cell[2])};
   const auto n = static_cast<float>(directions.size());
-  const float spread = std::sqrt(2 * kPi / n);
+  const auto light = [&](const Surface& hit) {
+    return direct_light(scene_, hit, rays) + field_.irradiance(hit.position, hit.normal, 0);
+  };
+  std::vector<Vec3> around(directions.size());
   Voxel out;
   out.cover.fill(1);
   for (std::size_t direction = 0; direction < kVoxelDirections; ++direction) {
@@ -126,25 +128,14 @@ Voxel VoxelServer::gather(const SurfaceVoxel& voxel, std::span<const Vec3> direc
     const Vec3 axis = axis_of(direction), origin = centre + axis * (grid_.size / 2);
     Vec3 u, v, sum;
     basis(axis, u, v);
-    std::size_t behind = 0;
-    for (const Vec3 local : directions) {
-      const Vec3 d = u * local.x + v * local.y + axis * local.z;
-      ++rays;
-      const auto hit = scene_.intersect(origin, d, spread);
-      if (hit && hit->back) {
-        if (2 * ++behind > directions.size()) break;
-        continue;
-      }
-      if (!hit) {
-        sum += scene_.state().sky.radiance(d);
-        continue;
-      }
-      const Vec3 light =
-          direct_light(scene_, *hit, rays) + field_.irradiance(hit->position, hit->normal, 0);
-      sum += hit->emission + hit->albedo * light;
-    }
-    if (2 * behind > directions.size()) continue;  // within a solid
-    out.color[direction] = sum / (n - static_cast<float>(behind));
+    std::ranges::transform(directions, around.begin(),
+                           [&](Vec3 d) { return u * d.x + v * d.y + axis * d.z; });
+    const std::size_t most = directions.size() / 2;
+    const std::size_t inside = ddgi::gather(
+        scene_, origin, around, 2 * kPi, rays, light,
+        [&](std::size_t, Vec3 radiance, const Surface*) { sum += radiance; }, most);
+    if (inside > most) continue;  // within a solid
+    out.color[direction] = sum / (n - static_cast<float>(inside));
   }
   return out;
 }

@@ -4,7 +4,7 @@
 #include "brick_pool.h"
 #include "voxel_field.h"
 
-#include "ddgi/ray_scene.h"
+#include "ddgi/gather.h"
 
 namespace gicodec::voxels {
 
@@ -12,14 +12,10 @@ struct VoxelOptions {
   float size = 0.5F;  ///< metres along a side of the finest
   BrickShape shape;
   VoxelForm form = VoxelForm::shared_exponent;
-  std::uint32_t slots = 0;      ///< for bricks; 0: what the first frame takes, and a quarter more
-  std::uint32_t rays = 16;      ///< per voxel and direction
-  bool all_directions = false;  ///< of each voxel, or those that a surface in it faces
-  bool turned = false;          ///< each voxel has them turned by chance, or all have the same
-  bool anew = false;            ///< others at every update
-  std::uint32_t warmup = 3;     ///< updates before the first one, so that light has bounced
-  ddgi::Box box;                ///< that there are voxels in
-  std::uint32_t seed = 1;
+  std::uint32_t slots = 0;  ///< for bricks; 0: what the first frame takes, and a quarter more
+  ddgi::GatherOptions gather{.rays = 16};  ///< of each direction of a voxel
+  bool all_directions = false;             ///< of each voxel, or those that a surface in it faces
+  ddgi::Box box;                           ///< that there are voxels in
 };
 
 class VoxelServer {

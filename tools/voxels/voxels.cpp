@@ -22,9 +22,9 @@ constexpr std::array kSettings{
             "slots for them, up to 16777216; 0: a quarter and 64 more than the first frame takes"},
     Setting{"all-directions", "0", "1: also those of a voxel that no surface in it faces"},
     Setting{"rays", "16", "per voxel and direction, 1 to 4096"},
-    Setting{"rays-turned", "0", "1: each voxel has them turned otherwise"},
-    Setting{"rays-anew", "0", "1: other rays with every update"},
-    Setting{"warmup", "3", "bounces before the first update, 0 to 100"}};
+    kinds::rays_turned("0"),
+    kinds::kRaysAnew,
+    kinds::kWarmup};
 constexpr std::array kDrawing{
     Setting{"detail", "4", "pixels that a voxel covers at least, 0 to 1000; 0: always the finest"}};
 constexpr std::array<std::string_view, 2> kBricks{"4", "8"};
@@ -125,14 +125,10 @@ VoxelOptions options_of(const kinds::Settings& settings, const ddgi::Scene& scen
   options.shape.side = settings.choice("brick", kBricks) == 0 ? 4 : 8;
   options.form = static_cast<VoxelForm>(settings.choice("form", kForms));
   options.slots = settings.whole("bricks", 0, kMaxBlocks);
-  options.rays = settings.whole("rays", 1, 4096);
+  options.gather = kinds::gather_options(settings, 1, 4096, seed);
   options.all_directions = settings.whole("all-directions", 0, 1) == 1;
-  options.turned = settings.whole("rays-turned", 0, 1) == 1;
-  options.anew = settings.whole("rays-anew", 0, 1) == 1;
-  options.warmup = settings.whole("warmup", 0, 100);
   const Vec3 around{1, 1, 1};
   options.box = {scene.volume.lo - around, scene.volume.hi + around};
-  options.seed = seed;
   return options;
 }
 
