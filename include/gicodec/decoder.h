@@ -66,9 +66,9 @@ class Decoder {
   /// limit_exceeded: its size or its work is beyond the limits. out_of_order: set_presence() is
   /// needed and has not been called.
   Status decode(std::span<const std::byte> packet);
-  /// The same, and writes the blocks that the packet may have changed into `view`, guard bands
-  /// included: those listed, or all for a keyframe. `view` thus stays equal to the
-  /// mirror if it was equal before. view_too_small is found before anything is applied.
+  /// The same, and writes the blocks that the packet may have changed, changed(), into `view`,
+  /// guard bands included. `view` thus stays equal to the mirror if it was equal before.
+  /// view_too_small is found before anything is applied.
   Status decode(std::span<const std::byte> packet, TextureView view);
 
   /// Which records exist, where the description has them counted or masked: what decode() goes by
@@ -79,13 +79,20 @@ class Decoder {
   /// Writes the whole texture, or some blocks, into `view`.
   Status read(TextureView view) const;
   Status read(TextureView view, std::span<const std::uint32_t> blocks) const;
+  /// Writes blocks to other places: blocks[i] to where block places[i] of `desc` stands in `view`,
+  /// e.g. those of a region into the texture of the volume (RegionGrid::block_of()).
+  /// invalid_argument for lists of different lengths or blocks of another shape or record;
+  /// block_out_of_range; view_too_small.
+  Status read(std::span<const std::uint32_t> blocks, const TextureDesc& desc, TextureView view,
+              std::span<const std::uint32_t> places) const;
 
   /// Every block, tightly packed; zero where none was received.
   [[nodiscard]] std::span<const std::byte> records() const noexcept;
   /// Per block, not 0 if a packet has brought it since the last keyframe.
   [[nodiscard]] std::span<const std::uint8_t> received() const noexcept;
-  /// Blocks of the last packet applied, ascending. Valid until the next call of decode().
-  [[nodiscard]] std::span<const std::uint32_t> updated() const noexcept;
+  /// Blocks that the last packet applied may have changed, ascending: those that it lists, or all
+  /// for a keyframe. Valid until the next call of decode().
+  [[nodiscard]] std::span<const std::uint32_t> changed() const noexcept;
   [[nodiscard]] const TextureDesc& desc() const noexcept;
   /// Number of the last update applied; 0 before the first.
   [[nodiscard]] std::uint32_t sequence() const noexcept;

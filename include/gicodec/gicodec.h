@@ -29,4 +29,6 @@
 #include <gicodec/threads.h>
 #include <gicodec/version.h>
 #include <gicodec/volume.h>
+#include <gicodec/volume_decoder.h>
+#include <gicodec/volume_encoder.h>
 #include <gicodec/voxels.h>
