@@ -95,7 +95,7 @@ void report(const std::string& path, const Texture& t, const Case& c, int rounds
       return;
     }
     (f == 0 ? key : updates) += packet->size();
-    if (f > 0) changed += decoder.updated().size();
+    if (f > 0) changed += decoder.changed().size();
   }
   const double texels = record_count(t.desc.block);
   const double full =

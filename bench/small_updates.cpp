@@ -21,7 +21,7 @@ std::vector<std::uint32_t> changed_probes(const Texture& t) {
                                        f == 0 ? Selection::all() : Selection::changed());
     if (!packet || decoder.decode(*packet) != Status::ok) return {};
   }
-  return {decoder.updated().begin(), decoder.updated().end()};
+  return {decoder.changed().begin(), decoder.changed().end()};
 }
 
 std::vector<std::uint32_t> choose(const std::vector<std::uint32_t>& changed, std::size_t count,

@@ -26,7 +26,7 @@ int main() {
       return 1;
     }
     std::printf("frame %u: %zu bytes, %zu probes, texels %s\n", frame, packet->size(),
-                decoder->updated().size(), client == server ? "equal" : "DIFFER");
+                decoder->changed().size(), client == server ? "equal" : "DIFFER");
   }
   return client == server ? 0 : 1;
 }

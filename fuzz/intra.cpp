@@ -35,13 +35,13 @@ void check_independence(const Decoder& decoder, const Bytes& before, const Bytes
   const auto& desc = decoder.desc();
   std::vector<std::uint32_t> kept, received;  // now: the packet's blocks too
   for (std::uint32_t block = 0; block < block_count(desc); ++block) {
-    if (!std::ranges::binary_search(decoder.updated(), block)) kept.push_back(block);
+    if (!std::ranges::binary_search(decoder.changed(), block)) kept.push_back(block);
     if (decoder.received()[block] != 0) received.push_back(block);
   }
   Exact other(before.size(), 1);
   Bytes replaced = before;
   check(decoder.read(TextureView{other.span()}, kept) == Status::ok &&
-            decoder.read(TextureView{replaced}, decoder.updated()) == Status::ok &&
+            decoder.read(TextureView{replaced}, decoder.changed()) == Status::ok &&
             replaced == after,
         "blocks that are not listed stay");
   auto stranger = decoder_that_holds(desc, keyframe_of(desc, other.span(), received), {});
@@ -80,7 +80,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     check(twin.decode(packet.span()) == status, "one verdict on any two instruction sets");
     check(twin.records() == decoder.records() &&
               twin.decoder().state_hash() == decoder.decoder().state_hash() &&
-              std::ranges::equal(twin.decoder().updated(), decoder.decoder().updated()),
+              std::ranges::equal(twin.decoder().changed(), decoder.decoder().changed()),
           "one result on any two instruction sets");
     if (status != Status::ok || !is_intra(peek(packet.span())->type)) continue;
     check_independence(decoder.decoder(), before, decoder.records(), packet.span());

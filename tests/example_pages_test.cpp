@@ -24,6 +24,10 @@ TEST(WriteAKindPage, ShowsTheExampleThatIsCompiledAndRun) {
   expect_shown("write-a-kind.md", "toy_kind.cpp");
 }
 
+TEST(LibraryPage, ShowsTheExampleThatIsCompiledAndRun) {
+  expect_shown("library.md", "photon_batches.cpp");
+}
+
 TEST(StreamFromARendererPage, ShowsTheExamplesThatAreCompiledAndRun) {
   expect_shown("stream-from-a-renderer.md", "probe_server.h");
   expect_shown("stream-from-a-renderer.md", "probe_client.h");

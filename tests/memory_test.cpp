@@ -216,7 +216,7 @@ TEST(Memory, WritingAViewAllocatesNothing) {
     auto status = Status::corrupt;
     EXPECT_EQ(heap_peak_of([&] { status = decoder.read(view); }), 0U);
     EXPECT_EQ(status, Status::ok);
-    EXPECT_EQ(heap_peak_of([&] { status = decoder.read(view, decoder.updated()); }), 0U);
+    EXPECT_EQ(heap_peak_of([&] { status = decoder.read(view, decoder.changed()); }), 0U);
     EXPECT_EQ(status, Status::ok);
   }
 }

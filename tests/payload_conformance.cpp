@@ -177,6 +177,55 @@ std::string check_codec(const VolumeDesc& volume, std::size_t texture, const Bac
   return {};
 }
 
+std::string check_volume(const VolumeDesc& volume, const Backend& backend, Generator& random) {
+  auto encoder = VolumeEncoder::create(volume, {.backend = backend.name(), .backends = {&backend}});
+  if (encoder.status() == Status::unsupported_shape ||
+      encoder.status() == Status::unsupported_format) {
+    return "unsupported";
+  }
+  auto decoder = VolumeDecoder::create(volume, {.backends = {&backend}});
+  if (!encoder || !decoder) return "no encoder or decoder";
+  const auto textures = textures_of(volume);
+  Contents contents = blank(volume), shown = contents;
+  for (unsigned update = 0; update < 5; ++update) {
+    change(volume, contents, random);
+    if (update == 3) encoder->request_keyframe();
+    const std::vector<ConstTextureView> views(contents.begin(), contents.end());
+    const auto packets =
+        encoder->encode(views, update == 0 ? Selection::all() : Selection::changed());
+    if (!packets || packets->size() != textures.size()) return "an update is not coded";
+    if (decoder->decode(*packets) != Status::ok) return "an update is refused";
+    for (std::uint8_t t = 0; t < textures.size(); ++t) {
+      const auto presence = presence_of(volume, contents, t);
+      const auto held = decoder->decoder(t)->records();
+      if (std::vector<std::byte>(held.begin(), held.end()) !=
+          records_of(textures[t].desc, contents[t], presence)) {
+        return "other records of " + textures[t].name;
+      }
+      if (decoder->read(t, TextureView{shown[t]}, decoder->changed(t)) != Status::ok) {
+        return "what changed is not read";
+      }
+      std::vector<std::byte> whole(shown[t].size()), sent(shown[t].size());
+      if (decoder->read(t, TextureView{whole}) != Status::ok ||
+          encoder->read(t, TextureView{sent}) != Status::ok || whole != shown[t] || whole != sent) {
+        return "other contents of " + textures[t].name;
+      }
+      const auto [set, first] = set_of(volume, t);
+      const auto& first_changed = decoder->changed(static_cast<std::uint8_t>(first));
+      if (set->bundled && !std::ranges::equal(decoder->changed(t), first_changed)) {
+        return "blocks of " + textures[t].name + " travel alone";
+      }
+    }
+  }
+  const auto again = *encoder->snapshot();
+  auto late = *VolumeDecoder::create(volume, {.backends = {&backend}});
+  if (late.decode(again) != Status::ok) return "a snapshot is refused";
+  for (std::uint8_t t = 0; t < textures.size(); ++t) {
+    if (late.decoder(t)->state_hash() != decoder->decoder(t)->state_hash()) return "another state";
+  }
+  return {};
+}
+
 /// Every record exists.
 std::vector<std::byte> presence_of_all(const TextureDesc& desc) {
   const std::uint32_t records = record_count(desc.block);

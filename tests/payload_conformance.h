@@ -38,6 +38,10 @@ void change(const VolumeDesc& volume, Contents& contents, Generator& random);
 /// take it.
 [[nodiscard]] std::string check_codec(const VolumeDesc& volume, std::size_t texture,
                                       const Backend& backend, Generator& random);
+/// Updates of all textures by a VolumeEncoder, which a VolumeDecoder takes exactly; blocks of sets
+/// that travel together are the same in all their textures. "unsupported" as above.
+[[nodiscard]] std::string check_volume(const VolumeDesc& volume, const Backend& backend,
+                                       Generator& random);
 /// A container with regions: all packets and those of one region.
 [[nodiscard]] std::string check_container(const Row& row, Generator& random);
 /// A session over a way that loses every so manieth message; ends with equal contents.

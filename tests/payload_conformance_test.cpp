@@ -32,6 +32,16 @@ TEST(PayloadConformance, EveryBackendIsExactAndSafe) {
   }
 }
 
+TEST(PayloadConformance, VolumesOfEveryKindAreExact) {
+  Generator random(4);
+  for (const Row& row : payload_rows()) {
+    for (const Backend* backend : built_in_backends()) {
+      EXPECT_EQ(check_volume(row.volume, *backend, random), "")
+          << row.name << ", " << backend->name();
+    }
+  }
+}
+
 TEST(PayloadConformance, ContainersHoldRegionsOfEveryKind) {
   Generator random(2);
   for (const Row& row : payload_rows()) EXPECT_EQ(check_container(row, random), "") << row.name;

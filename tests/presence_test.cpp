@@ -200,8 +200,8 @@ TEST(Presence, AChangeOfPresenceIsAChangeOfTheBlock) {
     const auto packet = session.encode();
     EXPECT_EQ(session.decoder.decode(packet), Status::ok);
     EXPECT_EQ(contents(session.decoder), contents(session.encoder));
-    const auto updated = session.decoder.updated();
-    return std::vector<std::uint32_t>(updated.begin(), updated.end());
+    const auto changed = session.decoder.changed();
+    return std::vector<std::uint32_t>(changed.begin(), changed.end());
   };
   EXPECT_EQ(step().size(), 20U);
   EXPECT_EQ(step().size(), 0U);
@@ -335,7 +335,7 @@ TEST(Received, BlackBlocksThatWereSentCount) {
     EXPECT_EQ(contents(decoder), held);
     EXPECT_NE(decoder.state_hash(), before);
     send(Selection::changed());
-    EXPECT_TRUE(decoder.updated().empty());
+    EXPECT_TRUE(decoder.changed().empty());
     // A keyframe begins anew.
     encoder.request_keyframe();
     send(std::vector<std::uint32_t>{1});

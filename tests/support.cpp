@@ -91,6 +91,15 @@ Isa any_isa(Random& random) {
   return chance(random, 2) ? best_isa() : supported_isas()[random() % supported_isas().size()];
 }
 
+std::vector<std::uint32_t> listed_blocks(const Decoder& decoder,
+                                         std::span<const std::byte> packet) {
+  std::vector<std::uint32_t> blocks(decoder.changed().begin(), decoder.changed().end());
+  if (is_keyframe(peek(packet)->type)) {
+    std::erase_if(blocks, [&](std::uint32_t block) { return decoder.received()[block] == 0; });
+  }
+  return blocks;
+}
+
 Bytes noise(Random& random, std::size_t size) {
   Bytes bytes(size);
   for (auto& byte : bytes) byte = static_cast<std::byte>(random());

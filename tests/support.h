@@ -47,6 +47,9 @@ Bytes noise(Random& random, std::size_t size);
 /// One of those that this machine has, the best in half of the cases: it is the fastest.
 Isa any_isa(Random& random);
 
+/// The blocks that the last packet of a decoder listed: of a keyframe those that are received.
+std::vector<std::uint32_t> listed_blocks(const Decoder& decoder, std::span<const std::byte> packet);
+
 /// Bytes in a heap block of just their size.
 class Exact {
  public:

@@ -65,9 +65,9 @@ class Decoder {
   /// earlier packet was not applied; wait for a keyframe. limit_exceeded: the packet's size or work
   /// is beyond the limits. out_of_order: the texture needs set_presence() first.
   Status decode(std::span<const std::byte> packet);
-  /// The same, then writes the blocks that the packet may have changed into `view`, guard bands
-  /// included: the listed ones, or all for a keyframe. A view that equals the mirror stays equal.
-  /// view_too_small is reported before the packet is applied.
+  /// The same, then writes the blocks that the packet may have changed, changed(), into `view`,
+  /// guard bands included. A view that equals the mirror stays equal. view_too_small is reported
+  /// before the packet is applied.
   Status decode(std::span<const std::byte> packet, TextureView view);
 
   /// Sets which records exist for the next decode() calls, for a texture whose Presence is not all:
@@ -78,13 +78,20 @@ class Decoder {
   /// Writes the whole texture, or some blocks, into `view`. view_too_small, block_out_of_range.
   Status read(TextureView view) const;
   Status read(TextureView view, std::span<const std::uint32_t> blocks) const;
+  /// Writes blocks to other places: blocks[i] to where block places[i] of `desc` stands in `view`,
+  /// e.g. those of a region into the texture of the volume (RegionGrid::block_of()).
+  /// invalid_argument for lists of different lengths or blocks of another shape or record;
+  /// block_out_of_range; view_too_small.
+  Status read(std::span<const std::uint32_t> blocks, const TextureDesc& desc, TextureView view,
+              std::span<const std::uint32_t> places) const;
 
   /// All blocks, tightly packed; zero if not received.
   [[nodiscard]] std::span<const std::byte> records() const noexcept;
   /// One byte per block, not 0 if the last keyframe or a packet since then listed it.
   [[nodiscard]] std::span<const std::uint8_t> received() const noexcept;
-  /// Blocks of the last packet applied, ascending. Valid until the next call of decode().
-  [[nodiscard]] std::span<const std::uint32_t> updated() const noexcept;
+  /// Blocks that the last packet applied may have changed, ascending: those that it lists, or all
+  /// for a keyframe. Valid until the next call of decode().
+  [[nodiscard]] std::span<const std::uint32_t> changed() const noexcept;
   [[nodiscard]] const TextureDesc& desc() const noexcept;
   /// Number of the last update applied; 0 before the first.
   [[nodiscard]] std::uint32_t sequence() const noexcept;

@@ -24,3 +24,5 @@
 #include <gicodec/threads.h>
 #include <gicodec/version.h>
 #include <gicodec/volume.h>
+#include <gicodec/volume_decoder.h>
+#include <gicodec/volume_encoder.h>

@@ -15,6 +15,7 @@
 #include "texture/presence.h"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 namespace gicodec {
@@ -64,7 +65,7 @@ struct Decoder::State {
   std::uint32_t last_checksum = 0;  ///< of packet `sequence`
   std::uint8_t texture_id = 0;      ///< of the last packet applied
 
-  Vector<std::uint32_t> updated;  ///< blocks of the last packet applied
+  Vector<std::uint32_t> changed;  ///< by the last packet applied
 };
 
 /// The decoder of a backend. Makes those of built-in backends on first use.
@@ -156,7 +157,9 @@ Status Decoder::State::apply(std::span<const std::byte> packet,
     }
   }
   records.resize(blocks.size() * block_bytes(desc));
-  // Nothing may fail after the backend, which may have changed its own state.
+  const bool clears = keyframe && blocks.size() < block_count(desc);
+  if (clears) changed.reserve(block_count(desc));
+  // A backend may have a state of its own, so that nothing may fail after it.
   const DecodeJob job{.desc = desc,
                       .blocks = blocks,
                       .payload = parts->payload,
@@ -182,7 +185,12 @@ Status Decoder::State::apply(std::span<const std::byte> packet,
                        .threads = threads},
                       stale);
   mirror.commit(keyframe, blocks, records, scratch->presence, stale, view);
-  std::swap(updated, blocks);
+  if (clears) {
+    changed.resize(block_count(desc));
+    std::iota(changed.begin(), changed.end(), 0U);
+  } else {
+    std::swap(changed, blocks);
+  }
   sequence = parts->info.sequence;
   last_checksum = checksum_after(*parts, packet);
   texture_id = parts->info.texture_id;
@@ -265,7 +273,23 @@ Status Decoder::read(TextureView texture, std::span<const std::uint32_t> blocks)
   for (const auto block : blocks) {
     if (block >= block_count(desc())) return Status::block_out_of_range;
   }
-  state_->mirror.write(*view, blocks);
+  state_->mirror.write(blocks, desc(), *view, blocks);
+  return Status::ok;
+}
+
+Status Decoder::read(std::span<const std::uint32_t> blocks, const TextureDesc& to,
+                     TextureView texture, std::span<const std::uint32_t> places) const {
+  const bool alike = to.record == desc().record && to.block == desc().block &&
+                     to.guard_band == desc().guard_band && blocks.size() == places.size();
+  if (!alike || validate(to) != Status::ok) return Status::invalid_argument;
+  const auto view = check_view(to, texture);
+  if (!view) return view.status();
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    if (blocks[i] >= block_count(desc()) || places[i] >= block_count(to)) {
+      return Status::block_out_of_range;
+    }
+  }
+  state_->mirror.write(blocks, to, *view, places);
   return Status::ok;
 }
 
@@ -284,7 +308,7 @@ std::span<const std::byte> Decoder::records() const noexcept { return state_->mi
 std::span<const std::uint8_t> Decoder::received() const noexcept {
   return state_->mirror.received();
 }
-std::span<const std::uint32_t> Decoder::updated() const noexcept { return state_->updated; }
+std::span<const std::uint32_t> Decoder::changed() const noexcept { return state_->changed; }
 const TextureDesc& Decoder::desc() const noexcept { return state_->mirror.desc(); }
 std::uint32_t Decoder::sequence() const noexcept { return state_->sequence; }
 std::uint32_t Decoder::checksum() const noexcept { return state_->last_checksum; }

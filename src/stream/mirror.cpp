@@ -70,35 +70,38 @@ void Mirror::commit(bool keyframe, std::span<const std::uint32_t> blocks,
                     presence.data() + (first + place) * presence_bytes_, count * presence_bytes_);
       }
       std::memset(received_.data() + block, 1, count);
-      if (view != nullptr && !clears) write_run(*view, some.subspan(place, count));
+      if (view != nullptr && !clears)
+        write_run(some[place], desc_, *view, some.subspan(place, count));
     });
   };
   for_each_range(threads_, blocks.size(), blocks_per_thread(desc_), commit_range);
   if (view != nullptr && clears) write_all(*view);
 }
 
-/// Writes blocks that are side by side.
-void Mirror::write_run(const CheckedView<std::byte>& view,
-                       std::span<const std::uint32_t> blocks) const noexcept {
-  reconstruct(isa_, desc_, view, blocks, records().subspan(blocks[0] * block_bytes_));
+/// Writes blocks from `first` on, side by side.
+void Mirror::write_run(std::uint32_t first, const TextureDesc& to,
+                       const CheckedView<std::byte>& view,
+                       std::span<const std::uint32_t> places) const noexcept {
+  reconstruct(isa_, to, view, places, records().subspan(first * block_bytes_));
   if (stale_.empty()) return;
-  for (const std::uint32_t block : blocks) {
-    const auto held = stale_band(block);
-    if (!held.empty()) scatter_band(desc_, view, block, held);
+  for (const std::uint32_t place : places) {
+    const auto held = stale_band(first++);
+    if (!held.empty()) scatter_band(to, view, place, held);
   }
 }
 
-void Mirror::write(const CheckedView<std::byte>& view,
-                   std::span<const std::uint32_t> blocks) const noexcept {
+void Mirror::write(std::span<const std::uint32_t> blocks, const TextureDesc& to,
+                   const CheckedView<std::byte>& view,
+                   std::span<const std::uint32_t> places) const noexcept {
   const auto write_range = [&](unsigned, std::size_t first, std::size_t size) {
-    const auto some = blocks.subspan(first, size);
-    for_each_run(some, [&](std::size_t place, std::size_t count) {
-      write_run(view, some.subspan(place, count));
+    const auto some = blocks.subspan(first, size), there = places.subspan(first, size);
+    for_each_run(some, [&](std::size_t at, std::size_t count) {
+      write_run(some[at], to, view, there.subspan(at, count));
     });
   };
   // Two threads must not write the same block.
   const bool unique =
-      std::adjacent_find(blocks.begin(), blocks.end(), std::greater_equal<>()) == blocks.end();
+      std::adjacent_find(places.begin(), places.end(), std::greater_equal<>()) == places.end();
   for_each_range(unique ? threads_ : Threads(), blocks.size(), blocks_per_thread(desc_),
                  write_range);
 }
@@ -109,7 +112,7 @@ void Mirror::write_all(const CheckedView<std::byte>& view) const noexcept {
     for (std::size_t done = 0; done < size;) {
       const auto blocks = std::span(some).first(std::min(some.size(), size - done));
       std::iota(blocks.begin(), blocks.end(), static_cast<std::uint32_t>(begin + done));
-      write_run(view, blocks);
+      write_run(blocks[0], desc_, view, blocks);
       done += blocks.size();
     }
   };

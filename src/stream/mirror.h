@@ -43,14 +43,16 @@ class Mirror {
               std::span<const std::byte> records, std::span<const std::byte> presence,
               const StaleBands& stale, const CheckedView<std::byte>* view = nullptr) noexcept;
 
-  /// Writes some blocks to a view. Cannot fail.
-  void write(const CheckedView<std::byte>& view,
-             std::span<const std::uint32_t> blocks) const noexcept;
+  /// Writes some blocks to where those of `places`, as many, stand in a texture `to` of the same
+  /// blocks. Cannot fail.
+  void write(std::span<const std::uint32_t> blocks, const TextureDesc& to,
+             const CheckedView<std::byte>& view,
+             std::span<const std::uint32_t> places) const noexcept;
   void write_all(const CheckedView<std::byte>& view) const noexcept;
 
  private:
-  void write_run(const CheckedView<std::byte>& view,
-                 std::span<const std::uint32_t> blocks) const noexcept;
+  void write_run(std::uint32_t first, const TextureDesc& to, const CheckedView<std::byte>& view,
+                 std::span<const std::uint32_t> places) const noexcept;
 
   TextureDesc desc_;
   Isa isa_;

@@ -3,11 +3,9 @@
 #include "base/guard.h"
 #include "base/parallel.h"
 #include "bitstream/container_format.h"
-#include "stream/decoder_memory.h"
 #include "stream/player_state.h"
 
 #include <algorithm>
-#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -17,6 +15,16 @@ namespace {
 constexpr std::uint64_t kSmallPacket = std::uint64_t{1} << 20;
 /// Beyond so many regions the reader reads all packets, and the player skips unselected ones.
 constexpr std::uint64_t kMostSelected = 1U << 16;
+
+std::vector<TextureDecoders::Texture> textures_of(const ContainerDescription& description) {
+  std::vector<TextureDecoders::Texture> textures;
+  for (const TextureEntry& entry : description.textures) {
+    const auto id = static_cast<std::uint8_t>(textures.size());
+    textures.push_back(
+        {entry.desc, description.volumes[entry.volume].region, presence_texture(description, id)});
+  }
+  return textures;
+}
 
 }  // namespace
 
@@ -37,12 +45,12 @@ Result<ContainerPlayer> ContainerPlayer::open(Source& source, const PlayerOption
         std::min(limits.max_packet_bytes, std::max(limits.max_total_bytes, kSmallPacket));
     auto reader = ContainerReader::open(source, limits, options.kinds);
     if (!reader) return reader.status();
-    auto scratch = DecoderScratch::create();
-    if (!scratch) return scratch.status();
-    auto state = std::make_unique<State>(options, *std::move(reader), *std::move(scratch));
-    for (const TextureEntry& entry : state->entries()) state->layouts.push_back(entry.desc.layout);
+    auto decoders = TextureDecoders::create(
+        textures_of(reader->description()),
+        {options.limits, options.backends, options.threads, nullptr, options.isa});
+    if (!decoders) return decoders.status();
+    auto state = std::make_unique<State>(*std::move(reader), *std::move(decoders));
     state->selected.assign(state->entries().size(), true);
-    state->changed.resize(state->entries().size());
     return ContainerPlayer(std::move(state));
   });
 }
@@ -54,7 +62,11 @@ bool ContainerPlayer::seekable() const noexcept { return state_->reader.seekable
 bool ContainerPlayer::finished() const noexcept { return state_->reader.finished(); }
 std::uint64_t ContainerPlayer::frame() const noexcept { return state_->frame; }
 ContainerPlayer::Where ContainerPlayer::where() const noexcept { return state_->where; }
-std::uint64_t ContainerPlayer::memory() const noexcept { return state_->held + state_->scratched; }
+std::uint64_t ContainerPlayer::memory() const noexcept { return state_->decoders.memory(); }
+std::span<const std::uint32_t> ContainerPlayer::changed(std::uint8_t texture) const noexcept {
+  const bool there = texture < state_->decoders.size();
+  return there ? state_->decoders.changed(texture) : std::span<const std::uint32_t>();
+}
 std::span<const ContainerPacket> ContainerPlayer::packets() const noexcept {
   return std::span(state_->packets).first(state_->count);
 }
@@ -96,75 +108,14 @@ Status ContainerPlayer::select(std::span<const std::uint8_t> textures) {
 Status ContainerPlayer::set_layout(std::uint8_t texture, const Layout& layout) {
   State& s = *state_;
   if (!s.is_played(texture)) return Status::unknown_texture;
-  const auto first = s.parts.lower_bound({texture, 0});
-  if (first != s.parts.end() && first->first.first == texture) return Status::out_of_order;
-  TextureDesc desc = s.entries()[texture].desc;
-  desc.layout = layout;
-  if (const Status status = validate(desc); status != Status::ok) return status;
-  s.layouts[texture] = layout;
-  return Status::ok;
-}
-
-Status ContainerPlayer::State::check_memory(std::uint64_t more, std::uint64_t shared) noexcept {
-  const std::uint64_t limit = options.limits.max_total_bytes;
-  const std::uint64_t all = held + shared + packed;
-  where.memory = more <= UINT64_MAX - all ? all + more : UINT64_MAX;
-  return where.memory <= limit ? Status::ok : Status::limit_exceeded;
-}
-
-Result<Decoder*> ContainerPlayer::State::part(PartId id) {
-  if (const auto found = parts.find(id); found != parts.end()) return &found->second;
-  const auto [texture, number] = id;
-  const TextureDesc desc =
-      number == 0 ? desc_of(texture)
-                  : region_texture(entries()[texture].desc, region_size(texture), number - 1);
-  // Includes the lists of a frame's changed blocks, which may come in two packets.
-  const std::uint64_t lists = 2 * sizeof(std::uint32_t) * std::uint64_t{block_count(desc)};
-  const std::uint64_t more = held_memory(desc) + lists;
-  const std::uint64_t shared = std::max(scratched, scratch_memory(desc, options.threads.count));
-  if (const Status room = check_memory(more, shared); room != Status::ok) return room;
-  auto decoder = Decoder::create(desc, {options.limits, options.backends, options.threads, nullptr,
-                                        options.isa, nullptr, scratch});
-  if (!decoder) return decoder.status();
-  Decoder& made = parts.emplace(id, *std::move(decoder)).first->second;
-  held += more;
-  scratched = shared;
-  return &made;
-}
-
-void ContainerPlayer::State::note_changed(const Decoder& decoder, PartId id,
-                                          bool keyframe) noexcept {
-  const auto [texture, number] = id;
-  const RegionGrid cut = regions(texture);
-  const auto add = [&, region = number - 1](std::uint32_t block) {
-    changed[id.first].push_back(id.second == 0 ? block : cut.block_of(region, block));
-  };
-  // A keyframe clears what it does not list.
-  const std::uint32_t blocks = keyframe ? block_count(decoder.desc()) : 0;
-  for (std::uint32_t block = 0; block < blocks; ++block) add(block);
-  if (keyframe) return;
-  for (const std::uint32_t block : decoder.updated()) add(block);
+  return s.decoders.set_layout(texture, layout);
 }
 
 Status ContainerPlayer::State::apply(const ContainerPacket& packet) {
-  const PartId id{packet.texture_id, packet.region};
-  where = {packet.frame, TextureRegion{id.first, id.second}};
-  if (!is_played(id.first)) return verify_checksum(packet.bytes);
-  const auto found = part(id);
-  if (!found) return found.status();
-  Decoder& decoder = **found;
-  if (const auto presence = presence_texture(reader.description(), id.first)) {
-    const auto existing = part({*presence, id.second});
-    if (!existing) return existing.status();
-    const Status told = decoder.set_presence((*existing)->records());
-    if (told != Status::ok) return told;
-  }
-  if (sought) return decoder.decode(packet.bytes);  // all blocks count as changed
-  std::vector<std::uint32_t>& list = changed[id.first];
-  const std::size_t most = block_count(decoder.desc());
-  if (list.capacity() - list.size() < most) list.reserve(list.size() + std::max(most, list.size()));
-  const Status status = decoder.decode(packet.bytes);
-  if (status == Status::ok) note_changed(decoder, id, packet.keyframe);
+  where = {packet.frame, TextureRegion{packet.texture_id, packet.region}};
+  if (!is_played(packet.texture_id)) return verify_checksum(packet.bytes);
+  const Status status = decoders.decode(packet.texture_id, packet.region - 1, packet.bytes);
+  where.memory = decoders.needed();
   return status;
 }
 
@@ -190,7 +141,9 @@ Status ContainerPlayer::State::gather() {
     if (count == packets.size()) packets.emplace_back();
     packets[count] = *std::exchange(ahead, std::nullopt);
     packed += packets[count++].bytes.size();
-    if (const Status room = check_memory(0, scratched); room != Status::ok) {
+    const Status room = decoders.set_beside(packed);
+    where.memory = decoders.needed();
+    if (room != Status::ok) {
       packets.clear();
       count = packed = 0;
       gathering = false;
@@ -220,20 +173,6 @@ Status ContainerPlayer::State::gather() {
   return Status::corrupt;
 }
 
-void ContainerPlayer::State::settle_changed(bool all) {
-  all_changed = all;
-  for (std::size_t t = 0; t < changed.size(); ++t) {
-    std::vector<std::uint32_t>& blocks = changed[t];
-    const auto first = parts.lower_bound({static_cast<std::uint8_t>(t), 0});
-    if (all && first != parts.end() && first->first.first == t) {
-      blocks.resize(block_count(entries()[t].desc));
-      std::iota(blocks.begin(), blocks.end(), 0U);
-    }
-    std::sort(blocks.begin(), blocks.end());
-    blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
-  }
-}
-
 Status ContainerPlayer::State::go_on(bool decoding) {
   started = true;
   if (!begun) {
@@ -241,7 +180,7 @@ Status ContainerPlayer::State::go_on(bool decoding) {
       where = {frame, std::nullopt};
       return status;
     }
-    for (auto& blocks : changed) blocks.clear();
+    decoders.begin_changes(!sought);  // All count as changed by what leads to a frame.
     frame = std::max(ahead->frame, sought.value_or(0));
     begun = true;
   }
@@ -267,13 +206,15 @@ Status ContainerPlayer::State::go_on(bool decoding) {
       where = {frame, std::nullopt};
       status = more;
     }
-    settle_changed(sought.has_value());
-    if (count > 0 && packets[0].frame != frame) count = at = 0;  // packets before the sought frame
+    all_changed = sought.has_value();
+    decoders.settle_changes(all_changed);
+    if (count > 0 && packets[0].frame != frame) count = at = 0;  // Those led to it.
     sought.reset();
     begun = false;
     return status;
   }
-  settle_changed(false);
+  all_changed = false;
+  decoders.settle_changes(false);
   return status;
 }
 
@@ -282,6 +223,17 @@ Status ContainerPlayer::next() {
 }
 Status ContainerPlayer::skip() {
   return guarded([&] { return state_->go_on(false); });
+}
+
+Status ContainerPlayer::read(std::uint8_t texture, TextureView view) const {
+  if (!state_->is_played(texture)) return Status::unknown_texture;
+  return guarded([&] { return state_->decoders.read(texture, view); });
+}
+
+Status ContainerPlayer::read_changed(std::uint8_t texture, TextureView view) const {
+  if (!state_->is_played(texture)) return Status::unknown_texture;
+  if (state_->all_changed) return read(texture, view);
+  return guarded([&] { return state_->decoders.read(texture, view, changed(texture)); });
 }
 
 Status ContainerPlayer::seek(std::uint64_t frame) {
@@ -297,9 +249,8 @@ Status ContainerPlayer::seek(std::uint64_t frame) {
     s.packed = 0;
     s.begun = false;
     s.sought = frame;
-    // Later packets may have been applied: start from keyframes.
-    s.parts.clear();
-    s.held = 0;
+    // What came later is not there yet.
+    s.decoders.clear();
     return Status::ok;
   });
 }

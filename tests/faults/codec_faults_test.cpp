@@ -1,11 +1,14 @@
 // Whatever allocation or thread fails in a call of an encoder or a decoder: the call says so,
 // changed nothing, and succeeds when it is made again.
 #include "faults.h"
+#include "payload_conformance.h"
 #include "shapes.h"
 #include "support.h"
 
 #include <gicodec/ao_points.h>
 #include <gicodec/encoder.h>
+#include <gicodec/volume_decoder.h>
+#include <gicodec/volume_encoder.h>
 #include <gicodec/voxels.h>
 
 #include <gtest/gtest.h>
@@ -263,6 +266,52 @@ void learn_as_if_nothing_had_failed(const TextureDesc& desc) {
                 Status::ok);
       ASSERT_EQ(out.blocks(), textures[i].blocks());
     }
+  });
+}
+
+/// Nothing of an update is kept if one of its textures fails.
+TEST(CodecFaultsVolume, GoesOnAsIfNothingHadFailed) {
+  const VolumeDesc volume = scene_volume(4);
+  std::array<Contents, 3> updates{blank(volume), blank(volume), blank(volume)};
+  Generator random(11);
+  for (std::size_t i = 0; i < updates.size(); ++i) {
+    if (i > 0) updates[i] = updates[i - 1];
+    change(volume, updates[i], random);
+  }
+  const auto views = [](const Contents& contents) {
+    return std::vector<ConstTextureView>(contents.begin(), contents.end());
+  };
+  auto sound = *VolumeEncoder::create(volume);
+  auto follower = *VolumeDecoder::create(volume);
+  std::vector<std::vector<Packet>> packets;
+  for (const Contents& contents : updates) {
+    packets.push_back(*sound.encode(views(contents)));
+    ASSERT_EQ(follower.decode(packets.back()), Status::ok);
+  }
+  const BlockMask active(4, 1);
+  with_every_fault([&](Fault& fault) {
+    auto encoder = insist(
+        fault, [&] { return VolumeEncoder::create(volume); }, kNothing);
+    auto decoder = insist(
+        fault, [&] { return VolumeDecoder::create(volume); }, kNothing);
+    for (std::size_t i = 0; i < updates.size(); ++i) {
+      const auto given = views(updates[i]);
+      ASSERT_EQ(*insist(
+                    fault, [&] { return encoder->encode(given); }, kNothing),
+                packets[i]);
+      ASSERT_EQ(insist(
+                    fault, [&] { return decoder->decode(packets[i]); }, kNothing),
+                Status::ok);
+    }
+    for (std::uint8_t t = 0; const Decoder* one = follower.decoder(t); ++t) {
+      ASSERT_EQ(decoder->decoder(t)->state_hash(), one->state_hash());
+    }
+    ASSERT_TRUE(insist(
+                    fault, [&] { return encoder->snapshot(); }, kNothing)
+                    .ok());
+    ASSERT_EQ(insist(
+                  fault, [&] { return encoder->set_active(0, active); }, kNothing),
+              Status::ok);
   });
 }
 

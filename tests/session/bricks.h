@@ -3,6 +3,7 @@
 
 #include "../messages.h"
 #include "session/any_volume.h"
+#include "support.h"
 #include "volumes.h"
 
 #include <gicodec/client.h>
@@ -48,7 +49,8 @@ inline std::map<std::uint8_t, std::vector<std::uint32_t>> sent_by(
     const auto it = decoders.try_emplace(packet.stream, *Decoder::create(desc)).first;
     EXPECT_EQ(it->second.decode(*packet.packet), Status::ok);
     auto& blocks = sent[packet.stream.texture];
-    blocks.insert(blocks.end(), it->second.updated().begin(), it->second.updated().end());
+    const auto listed = listed_blocks(it->second, *packet.packet);
+    blocks.insert(blocks.end(), listed.begin(), listed.end());
   }
   return sent;
 }

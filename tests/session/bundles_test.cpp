@@ -162,7 +162,7 @@ TEST(Lots, HigherRanksComeFirst) {
       if (packet.stream.texture != 0) continue;
       auto it = decoders.try_emplace(packet.stream, *Decoder::create(world.exists.desc())).first;
       ASSERT_EQ(it->second.decode(*packet.packet), Status::ok);
-      sent.assign(it->second.updated().begin(), it->second.updated().end());
+      sent = listed_blocks(it->second, *packet.packet);
     }
     order.push_back(sent);
   }

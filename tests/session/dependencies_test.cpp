@@ -110,7 +110,7 @@ TEST(Names, NobodyWaitsForWhatKeepsChanging) {
         ASSERT_EQ(decoder.decode(*packet.packet), Status::ok);
         const auto places =
             shared ? cut.blocks_of(packet.stream.region) : std::vector<std::uint32_t>();
-        for (const std::uint32_t at : decoder.updated()) {
+        for (const std::uint32_t at : listed_blocks(decoder, *packet.packet)) {
           const std::uint32_t block = shared ? places[at] : at;
           if (packet.stream.texture == 0) {
             ++pages[block];

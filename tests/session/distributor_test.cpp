@@ -232,7 +232,7 @@ class World {
       EXPECT_EQ(is_keyframe(info.type), packet.keyframe);
       bytes += packet.packet->size();
       blocks += packet.blocks;
-      for (const std::uint32_t block : chain.decoder.updated()) {
+      for (const std::uint32_t block : listed_blocks(chain.decoder, *packet.packet)) {
         received[packet.stream].insert(chain.blocks[block]);
       }
     }

@@ -264,10 +264,7 @@ Status Client::State::apply(const UpdateMessage::Part& part) {
   const bool keyframe = info.ok() && is_keyframe(info->type);
   const bool by_mirror = info.ok() && depends_on_mirror_only(info->backend);
   (*found)->stateful = !by_mirror || (!keyframe && (*found)->stateful);
-  const auto count =
-      keyframe ? block_count(decoder.desc()) : static_cast<std::uint32_t>(decoder.updated().size());
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const std::uint32_t block = keyframe ? i : decoder.updated()[i];
+  for (const std::uint32_t block : decoder.changed()) {
     const std::uint32_t place = whole ? block : blocks[block];
     if (gathered) {
       copy_block(decoder.desc(), *check_view(decoder.desc(), ConstTextureView(scratch)), block,
@@ -277,7 +274,7 @@ Status Client::State::apply(const UpdateMessage::Part& part) {
     if (is_presence) told_presence.emplace_back(part.stream, block);
   }
   ++statistics.packets;
-  statistics.blocks += decoder.updated().size();
+  statistics.blocks += info->all_blocks ? block_count(decoder.desc()) : info->blocks;
   return Status::ok;
 }
 

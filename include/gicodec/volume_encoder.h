@@ -1,0 +1,89 @@
+// Encoder of all textures of a volume.
+#pragma once
+
+#include <gicodec/api.h>
+#include <gicodec/backend.h>
+#include <gicodec/encoder.h>
+#include <gicodec/kind.h>
+#include <gicodec/packet.h>
+#include <gicodec/settings.h>
+#include <gicodec/status.h>
+#include <gicodec/texture.h>
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace GICODEC_API gicodec {
+
+/// As those of an Encoder, for every texture.
+struct VolumeEncoderOptions {
+  std::string_view backend = "native";
+  BackendSettings settings = {};
+  std::uint32_t gop = 30;  ///< keyframes of all textures every `gop` updates; 0: only on request
+  /// The texture_id of the first texture's packets, e.g. VolumeEntry::first_texture; those of the
+  /// others follow.
+  std::uint8_t first_texture = 0;
+  /// EncoderOptions::max_error of each texture, 0 for what says which records exist; empty: nothing
+  /// is lost.
+  std::vector<float> max_errors = {};
+  std::vector<const Backend*> backends = {};  ///< further ones, needed during create() only
+};
+
+/// Turns successive contents of a volume of any kind into packets, one of each texture an update:
+///
+///     const VolumeDesc volume = *photon_volume(8, 64);
+///     auto encoder = VolumeEncoder::create(volume);
+///     auto decoder = VolumeDecoder::create(volume);
+///     const ConstTextureView views[] = {counts_view, batches_view, photons_view};
+///     const Result<std::vector<Packet>> packets = encoder->encode(views);
+///     Status status = packets ? decoder->decode(*packets) : packets.status();
+///     if (status == Status::ok) status = decoder->read(2, my_photons, decoder->changed(2));
+///
+/// A VolumeDesc says which texture holds the presence of others, and which groups which
+/// are bundled. Records whose order means nothing are put in order by Kind::sort before.
+/// One thread at a time per encoder. Movable; a moved-from encoder may only be destroyed or
+/// assigned to.
+class VolumeEncoder {
+ public:
+  /// Errors: those of validate() and of Encoder::create(); invalid_argument for a number of
+  /// max_errors that is not that of textures, or more texture ids than 256.
+  [[nodiscard]] static Result<VolumeEncoder> create(const VolumeDesc& volume,
+                                                    const VolumeEncoderOptions& options = {});
+  VolumeEncoder(VolumeEncoder&&) noexcept;
+  VolumeEncoder& operator=(VolumeEncoder&&) noexcept;
+  ~VolumeEncoder();
+
+  /// Codes the selected blocks of `views`, one of each texture: the packets of all textures, in
+  /// the order in which decoders must apply them. A block of a group that is bundled goes into
+  /// all of the group's packets if it changed in one. A list of blocks holds for every group.
+  /// An error leaves all textures as they were; with a stateful backend, as HEVC, the
+  /// next packets are keyframes. Errors: those of Encoder::encode(); invalid_argument for a number
+  /// of views that is not that of textures; presence_invalid.
+  [[nodiscard]] Result<std::vector<Packet>> encode(std::span<const ConstTextureView> views,
+                                                   Selection selection = Selection::changed());
+  /// The same with a selection for each group; invalid_argument for another number of them.
+  [[nodiscard]] Result<std::vector<Packet>> encode(std::span<const ConstTextureView> views,
+                                                   std::span<const Selection> selections);
+
+  /// Keyframes of all textures as they stand, see Encoder::snapshot().
+  [[nodiscard]] Result<std::vector<Packet>> snapshot();
+  /// Makes the next packets keyframes.
+  void request_keyframe() noexcept;
+  /// Blocks of a group that Selection::changed() never selects, see Encoder::set_active().
+  /// unknown_group, mask_mismatch.
+  Status set_active(std::uint8_t group, std::span<const std::uint8_t> active);
+
+  /// Writes a texture as decoders hold it after the last packets. unknown_texture, view_too_small.
+  Status read(std::uint8_t texture, TextureView view) const;
+  [[nodiscard]] const VolumeDesc& desc() const noexcept;
+
+ private:
+  struct GICODEC_LOCAL State;
+  explicit VolumeEncoder(std::unique_ptr<State> state) noexcept;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace gicodec
