@@ -42,10 +42,9 @@ struct VolumeEncoderOptions {
 ///     Status status = packets ? decoder->decode(*packets) : packets.status();
 ///     if (status == Status::ok) status = decoder->read(2, my_photons, decoder->changed(2));
 ///
-/// A VolumeDesc says which texture holds the presence of others, and which groups which
-/// are bundled. Records whose order means nothing are put in order by Kind::sort before.
-/// One thread at a time per encoder. Movable; a moved-from encoder may only be destroyed or
-/// assigned to.
+/// The VolumeDesc says which texture holds the presence of others, and which groups are bundled.
+/// The caller sorts records whose order means nothing (Kind::sort). One thread at a time per
+/// encoder. A moved-from encoder may only be destroyed or assigned to.
 class VolumeEncoder {
  public:
   /// Errors: those of validate() and of Encoder::create(); invalid_argument for a number of
@@ -57,10 +56,10 @@ class VolumeEncoder {
   ~VolumeEncoder();
 
   /// Codes the selected blocks of `views`, one of each texture: the packets of all textures, in
-  /// the order in which decoders must apply them. A block of a group that is bundled goes into
-  /// all of the group's packets if it changed in one. A list of blocks holds for every group.
-  /// An error leaves all textures as they were; with a stateful backend, as HEVC, the
-  /// next packets are keyframes. Errors: those of Encoder::encode(); invalid_argument for a number
+  /// the order in which decoders must apply them. A block of a bundled group goes into all of the
+  /// group's packets if it changed in one texture. A list of blocks holds for every group.
+  /// An error leaves all textures as before; with a stateful backend, such as hevc, the next
+  /// packets are keyframes. Errors: those of Encoder::encode(); invalid_argument for a number
   /// of views that is not that of textures; presence_invalid.
   [[nodiscard]] Result<std::vector<Packet>> encode(std::span<const ConstTextureView> views,
                                                    Selection selection = Selection::changed());
