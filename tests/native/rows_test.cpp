@@ -39,7 +39,7 @@ std::size_t size_of(const test::UpdateCase& u) {
 test::UpdateCase points(bool by_normal, bool move) {
   constexpr std::uint32_t kCells = 400;
   const auto volume = *ao_point_volume(kCells, 1, 1);
-  const TextureDesc& desc = volume.sets[0].textures[0].desc;
+  const TextureDesc& desc = volume.groups[0].textures[0].desc;
   const Record& record = desc.record;
   Bytes mirror(texture_bytes(desc)), records;
   test::Random random(1);
@@ -77,7 +77,7 @@ TEST(NativeRows, PointsChangeLikeTheirKin) {
 /// Turning around y: two numbers, each of which is in a matrix twice, in several matrices.
 test::UpdateCase matrices(std::uint32_t objects, std::uint32_t of_object) {
   const auto volume = *ao_point_volume(1, 1, objects * of_object);
-  const TextureDesc& desc = volume.sets[2].textures[1].desc;
+  const TextureDesc& desc = volume.groups[2].textures[1].desc;
   const auto turned = [&](float by) {
     Bytes bytes;
     for (std::uint32_t object = 0; object < objects; ++object) {

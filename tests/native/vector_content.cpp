@@ -122,7 +122,7 @@ std::uint32_t edge(Random& random, const Component& component, bool dull) {
 }  // namespace
 
 TextureDesc vertices(Grid grid, bool floats) {
-  return irradiance_vector_volume(grid, floats)->sets[0].textures[0].desc;
+  return irradiance_vector_volume(grid, floats)->groups[0].textures[0].desc;
 }
 
 Bytes make_vertices(const TextureDesc& desc, VertexContent content, unsigned frame,

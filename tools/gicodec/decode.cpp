@@ -1,5 +1,7 @@
 // gicodec decode: writes the dumps of a container.
 #include "common/backend_flags.h"
+
+#include <gicodec/textures.h>
 #include "common/cli.h"
 #include "common/container_input.h"
 #include "common/file_forms.h"
