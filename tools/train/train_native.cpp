@@ -36,7 +36,7 @@ std::vector<std::byte> all_cores(const tools::Dump& dump, std::vector<std::uint3
   std::vector<std::byte> cores(probes.size() * block_bytes(dump.info.desc));
   const auto view = check_view(dump.info.desc, ConstTextureView(dump.texels));
   if (!view) throw tools::Error(tools::Exit::bad_input, "a dump that is no texture");
-  std::vector<std::uint32_t> stale;
+  Vector<std::uint32_t> stale;
   strip(best_isa(), dump.info.desc, *view, probes, cores, stale);
   return cores;
 }

@@ -71,7 +71,9 @@ GICODEC_INLINE Four scales_around(const PlaneCoding& c, std::size_t at) {
           load(from + 3 * c.plane_size)};
 }
 
-/// How the texels of a group are coded: all exist; some do not; they may repeat others.
+/// How the texels of a group are coded: all exist; some do not; they may repeat others. `kShared`:
+/// the last plane may be an exponent. It costs compilers an instantiation more, and is worth that
+/// where all texels exist.
 enum class Texels { all, some, repeating };
 
 template <bool kDecode, Texels kTexels, bool kShared, typename Coder>
@@ -89,7 +91,7 @@ GICODEC_INLINE void code_texel(const PlaneCoding& c, unsigned p, unsigned i, uns
   std::uint16_t* const r = c.residual + p * c.plane_size;
   Four ds = neighbours(d, near);
   if constexpr (kPartial) replace_absent(g, d + at, near, ds);
-  const bool exponent = kShared && p + 1 == g.planes;
+  const bool exponent = kShared && g.shared && p + 1 == g.planes;
   const bool mantissa = kShared && c.scaled && !exponent;
   I16 reference = load(g.reference + p * c.plane_size + at);
   if (mantissa) reference = scaled(reference, load(c.scale + at));
@@ -184,7 +186,7 @@ template <bool kDecode, Texels kTexels, bool kShared, typename Coder>
                 g.scratch + (2 * g.planes + 1) * texels * kLanes,
                 g.scratch + (2 * g.planes + 2) * texels * kLanes,
                 g.scratch + (2 * g.planes + 3) * texels * kLanes,
-                kShared && (g.coded >> (g.planes - 1) & 1) != 0,
+                kShared && g.shared && (g.coded >> (g.planes - 1) & 1) != 0,
                 {},
                 false};
   if (g.update) {
@@ -203,7 +205,7 @@ template <bool kDecode, Texels kTexels, bool kShared, typename Coder>
     }
     unsigned i = first_i, j = first_j;
     for (unsigned k = 0; k < g.planes && k <= turn; ++k) {
-      const unsigned p = !kShared ? k : (k == 0 ? g.planes : k) - 1;
+      const unsigned p = !(kShared && g.shared) ? k : (k == 0 ? g.planes : k) - 1;
       if (j < g.rows && (g.coded >> p & 1) != 0)
         code_texel<kDecode, kTexels, kShared>(c, p, i, j, coder);
       if (i == 0) {
@@ -228,8 +230,7 @@ GICODEC_INLINE bool code_any_planes(const Group& g, Coder& coder) {
     return g.shared ? code_planes<kDecode, Texels::all, true>(g, coder)
                     : code_planes<kDecode, Texels::all, false>(g, coder);
   }
-  return g.shared ? code_planes<kDecode, Texels::some, true>(g, coder)
-                  : code_planes<kDecode, Texels::some, false>(g, coder);
+  return code_planes<kDecode, Texels::some, true>(g, coder);
 }
 
 Step* model_planes(const Group& g, Step* steps) {
