@@ -1,8 +1,8 @@
 // Irradiance maps of a scene whose light moves: bytes of each way to stream them beside zstd -19 on
 // byte planes, and how far the pictures are from those of the unclustered map.
+#include "common/program.h"
 #include "ddgi/client_renderer.h"
 #include "ddgi/picture.h"
-#include "ddgi/program.h"
 #include "ddgi/scenes.h"
 #include "h264_peer.h"
 #include "maps/maps.h"
@@ -375,5 +375,5 @@ int main(int argc, char** argv) {
   app.add_option("--reference-rays", flags.reference_rays, "Per texel of the reference")
       ->show_default();
   app.add_option("--pictures", flags.pictures, "Folder for pictures")->type_name("DIR");
-  return ddgi::run_program(app, argc, argv, [&] { return run(flags); });
+  return tools::run_program(app, argc, argv, [&] { return run(flags); });
 }

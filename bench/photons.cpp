@@ -5,10 +5,10 @@
 #include "ddgi/noise.h"
 #include "ddgi/picture.h"
 #include "ddgi/scenes.h"
-#include "ddgi/volume_encoders.h"
 #include "photons/held_photons.h"
 #include "photons/reference.h"
 #include "photons/splatting.h"
+#include "programs/volume_encoders.h"
 
 #include <gicodec/encoder.h>
 
@@ -297,7 +297,7 @@ void print_table_2(const Case& c, const std::vector<std::string>& settings, bool
   const ddgi::Scene scene = *ddgi::make_scene(c.scene);
   ddgi::RayScene rays(scene);
   const auto light = photons::light(rays, volume.desc);
-  ddgi::VolumeEncoders native(volume.desc, "native", c.scene), zstd(volume.desc, "zstd", c.scene);
+  kinds::VolumeEncoders native(volume.desc, "native", c.scene), zstd(volume.desc, "zstd", c.scene);
   Latency latency;
   double trace = 0, client = 0;
   std::size_t bytes = 0, by_zstd = 0, stored = 0, batches = 0;

@@ -94,17 +94,6 @@ TEST(Forms, FixedRaysRepeatInNoisyModeAndTurningOnesDifferInConverged) {
   EXPECT_FALSE(last_two(TraceMode::converged, Rotation::turning));
 }
 
-// An update that was left out changes nothing about the next one.
-TEST(Forms, SkippedUpdatesLeaveTheNextOneAsItIs) {
-  const TraceOptions options{.rays = 32, .rotation = Rotation::turning};
-  Traced whole(busy_room(), options), resumed(busy_room(), options);
-  whole.volume.update(0);
-  whole.volume.update(1);
-  resumed.volume.skip();
-  resumed.volume.update(1);
-  EXPECT_TRUE(whole.volume.textures() == resumed.volume.textures());
-}
-
 TEST(Forms, ClampBoundsWhatARayBrings) {
   for (const TraceMode mode : {TraceMode::converged, TraceMode::noisy}) {
     Traced traced(room({4, 3, 5}, 0.5F, 2.0F), {.mode = mode,

@@ -6,7 +6,7 @@
 set -uo pipefail
 build=$(realpath "$1")
 cd "$(dirname "$0")/../.." || exit
-gicodec=$build/tools/gicodec/gicodec render=$build/tools/ddgi/gi-render
+gicodec=$build/tools/gicodec/gicodec render=$build/tools/programs/gi-render
 small=(--size 48x27 --samples 1)
 work=$(mktemp -d)
 trap 'wait; rm -rf "$work"' EXIT

@@ -3,8 +3,8 @@
 #include "common/container_input.h"
 #include "ddgi/rooms.h"
 #include "dump/error.h"
-#include "kinds/kind_flags.h"
-#include "kinds/source_container.h"
+#include "programs/kind_flags.h"
+#include "programs/source_container.h"
 #include "tools/dump_support.h"
 
 #include <gicodec/engines.h>

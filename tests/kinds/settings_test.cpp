@@ -2,8 +2,8 @@
 #include "kinds/settings.h"
 #include "ddgi/rooms.h"
 #include "dump/error.h"
-#include "kinds/kind_flags.h"
-#include "kinds/traced_kind.h"
+#include "programs/kind_flags.h"
+#include "programs/kind_table.h"
 
 #include <gicodec/irradiance_vectors.h>
 #include <gicodec/kind.h>

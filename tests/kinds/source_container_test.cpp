@@ -1,11 +1,11 @@
 // What a source gives comes back from its container, frame by frame, whatever the kind.
-#include "kinds/source_container.h"
+#include "programs/source_container.h"
 #include "payload_conformance.h"
 #include "tools/dump_support.h"
 
 #include "common/container_input.h"
 #include "dump/error.h"
-#include "kinds/stored_volume.h"
+#include "programs/stored_volume.h"
 
 #include <gicodec/photons.h>
 

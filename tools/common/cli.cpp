@@ -7,22 +7,12 @@
 
 #include <algorithm>
 #include <atomic>
-#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <thread>
 
 namespace gicodec::tools {
 namespace {
-
-volatile std::sig_atomic_t caught_signal = 0;
-
-extern "C" void note_signal(int signal) {
-  caught_signal = signal;
-  alarm(1);
-}
-/// Repeats until the program ends: it may have begun to wait for a pipe just after the signal.
-extern "C" void wake(int) { alarm(1); }
 
 /// Makes strings UTF-8: names of files and channels may hold any bytes. Keys are the program's or a
 /// container's, and so are UTF-8.
@@ -100,29 +90,6 @@ void Progress::step() {
     print(stderr, "\r\033[K{}: {}", label_, done_);
   }
   std::fflush(stderr);
-}
-
-void check_interrupt() {
-  if (caught_signal != 0) throw Interrupted{caught_signal};
-}
-
-int caught() noexcept { return caught_signal; }
-
-void catch_signals() {
-  std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGXFSZ, SIG_IGN);  // A file size limit is an error like a full disk.
-  struct sigaction again {};
-  again.sa_handler = wake;
-  sigaction(SIGALRM, &again, nullptr);
-  // Only once: a second signal ends the program even if a step never ends.
-  struct sigaction action {};
-  action.sa_handler = note_signal;
-  action.sa_flags = static_cast<int>(SA_RESETHAND);  // interrupts waiting for a pipe
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-  struct sigaction hangup {};
-  sigaction(SIGHUP, nullptr, &hangup);
-  if (hangup.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);  // nohup ignores it.
 }
 
 void run_all(unsigned threads, const std::vector<std::function<void()>>& tasks) {

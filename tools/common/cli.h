@@ -1,7 +1,7 @@
-// The frame of `gicodec`: one function per command, each in a file of its name.
+// The commands of gicodec, each in a file of its name, and what they share.
 #pragma once
 
-#include "common/command_line.h"
+#include "common/program.h"
 #include "dump/error.h"
 #include "dump/text.h"
 
@@ -62,16 +62,6 @@ class Progress {
   std::size_t done_ = 0;
   bool shown_;
 };
-
-/// Thrown by check_interrupt() and Progress::step() after SIGINT or SIGTERM, so that destructors
-/// remove temporary files.
-struct Interrupted {
-  int signal;
-};
-void check_interrupt();
-void catch_signals();
-/// The caught signal, or 0.
-[[nodiscard]] int caught() noexcept;
 
 /// Starts tasks in order on up to `threads` threads, and returns when all have ended. Rethrows the
 /// exception of the first task in the list that failed.

@@ -247,8 +247,6 @@ UpdateStatistics DdgiVolume::update(double time) {
   return statistics;
 }
 
-void DdgiVolume::skip() { ++state_->updates; }
-
 const ProbeTextures& DdgiVolume::textures() const noexcept { return state_->textures; }
 const VolumeShape& DdgiVolume::shape() const noexcept { return state_->shape; }
 std::span<const std::uint32_t> DdgiVolume::active_probes() const noexcept { return state_->active; }

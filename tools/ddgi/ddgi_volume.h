@@ -71,8 +71,6 @@ class DdgiVolume {
 
   /// Puts the scene into its state at `time` and traces the volume anew.
   UpdateStatistics update(double time);
-  /// Counts an update that is not needed: the next one has the rays as if this had been traced.
-  void skip();
   /// Contents after the last update.
   [[nodiscard]] const ProbeTextures& textures() const noexcept;
   [[nodiscard]] const VolumeShape& shape() const noexcept;

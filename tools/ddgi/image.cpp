@@ -43,8 +43,6 @@ Image::Level halve(const Image::Level& from) {
 
 }  // namespace
 
-float srgb_to_linear(std::uint8_t code) { return decode_table()[code]; }
-
 std::uint8_t linear_to_srgb(float value) {
   const float v = saturate(value);
   const float s = v <= 0.0031308F ? v * 12.92F : 1.055F * std::pow(v, 1 / 2.4F) - 0.055F;

@@ -9,8 +9,7 @@
 
 namespace gicodec::ddgi {
 
-/// Linear value of an sRGB code and back.
-[[nodiscard]] float srgb_to_linear(std::uint8_t code);
+/// The sRGB code of a linear value.
 [[nodiscard]] std::uint8_t linear_to_srgb(float value);
 
 /// Repeats in both directions. Immutable after construction.

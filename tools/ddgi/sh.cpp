@@ -97,16 +97,6 @@ std::string_view to_string(ShForm form) noexcept {
   return {};
 }
 
-const std::vector<std::string>& sh_names() {
-  static const std::vector<std::string> names = [] {
-    std::vector<std::string> all;
-    for (const Row& row : kL2) all.emplace_back(row.name);
-    for (const Row& row : kRatios) all.emplace_back(row.name);
-    return all;
-  }();
-  return names;
-}
-
 std::vector<ShTexture> sh_textures(ShForm form, Grid grid) {
   std::vector<ShTexture> textures;
   for (const Row& row : rows_of(form)) {

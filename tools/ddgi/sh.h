@@ -30,9 +30,6 @@ enum class ShForm : std::uint8_t {
 };
 [[nodiscard]] std::string_view to_string(ShForm form) noexcept;
 
-/// Names of the textures of any form.
-[[nodiscard]] const std::vector<std::string>& sh_names();
-
 struct ShTexture {
   std::string name;
   TextureDesc desc;  ///< blocks of one texel

@@ -1,6 +1,6 @@
 #include "video.h"
 
-#include "ddgi/program.h"
+#include "common/program.h"
 #include "ddgi/texels.h"
 #include "dump/error.h"
 
@@ -184,7 +184,7 @@ bool VideoDecoder::update(std::span<const std::byte> sizes, std::span<const std:
   }
   std::vector<std::byte> packet;
   for (auto frame = chain.rbegin(); frame != chain.rend(); ++frame) {
-    if (ddgi::interrupted()) return false;
+    if (tools::interrupted()) return false;
     packet.clear();
     for (std::uint32_t page = frame->first; page < frame->first + frame->pages; ++page) {
       std::uint16_t size = 0;

@@ -17,8 +17,4 @@ struct ModuleHead {
   std::string_view version = kVersionString;  ///< with which the module was built
 };
 
-/// The table of the module `name`, from the folders where the program finds its libraries; it stays
-/// loaded. Throws Error of Exit::internal, saying what the module is for. Any thread.
-[[nodiscard]] const ModuleHead* load_module(const char* name, const char* purpose);
-
 }  // namespace gicodec::tools

@@ -19,7 +19,7 @@ constexpr float kOrbitRadius = 0.25F;  // of the volume's size
 
 Camera parse(const std::string& text) {
   const auto commas = std::count(text.begin(), text.end(), ',');
-  const auto n = ddgi::numbers(text, commas == 6 ? 7 : 6, "--camera");
+  const auto n = kinds::numbers(text, commas == 6 ? 7 : 6, "--camera");
   Camera camera{.eye = {n[0], n[1], n[2]}, .target = {n[3], n[4], n[5]}};
   if (n.size() == 7) camera.fov_y = std::clamp(n[6], 1.0F, 170.0F);
   if (length(cross(camera.target - camera.eye, camera.up)) < 1e-6F) camera.up = {0, 0, -1};

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "ddgi/scene.h"
-#include "ddgi/scene_source.h"
+#include "programs/scene_flags.h"
 
 #include <gicodec/protocol.h>
 

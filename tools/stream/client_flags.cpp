@@ -74,7 +74,7 @@ void add_client_flags(tools::Command& app, ClientFlags& o) {
       ->allow(tools::in_range(1, 256));
 
   const std::string pictures = "Pictures";
-  ddgi::add_scene_flags(app, o.scene);
+  kinds::add_scene_flags(app, o.scene);
   app.remove_option(app.get_option("--grid"));
   app.remove_option(app.get_option("--bounds"));
   add_camera_flags(app, o.camera);

@@ -3,8 +3,8 @@
 
 #include "client_camera.h"
 #include "common/cli.h"
-#include "ddgi/scene_source.h"
-#include "kinds/kind_flags.h"
+#include "programs/kind_flags.h"
+#include "programs/scene_flags.h"
 #include "token.h"
 #include "viewer.h"
 
@@ -18,7 +18,7 @@ namespace gicodec::streaming {
 struct ClientFlags {
   std::string connect, output, record, delivery = "unicast", size = "480x270", subscribe,
                                        format = "text", pin;
-  ddgi::SceneFlags scene;
+  kinds::SceneFlags scene;
   CameraFlags camera;
   TokenFlags token;
   ViewerOptions viewer;

@@ -3,15 +3,15 @@
 #include "client_recording.h"
 #include "client_summary.h"
 #include "common/cli.h"
-#include "ddgi/program.h"
+#include "common/program.h"
 #include "ddgi/scene_id.h"
 #include "dump/dump.h"
 #include "dump/error.h"
 #include "dump/file.h"
 #include "dump/text.h"
-#include "kinds/kind_flags.h"
 #include "loading.h"
 #include "log.h"
+#include "programs/kind_flags.h"
 #include "simulate.h"
 #include "tls.h"
 #include "viewer.h"
@@ -79,7 +79,7 @@ Exit run_crowd(const ClientFlags& o, const CameraPath& path) {
       o.viewer.link.server, o.viewer.link.net, o.viewer.client,        o.simulate,
       o.viewer.updates,     o.viewer.seconds,  o.viewer.link.patience, o.viewer.scene};
   const SimulateResult r = simulate(options, path);
-  if (r.connected == 0 && r.reason == Reason::left && r.unusable.empty() && !ddgi::interrupted())
+  if (r.connected == 0 && r.reason == Reason::left && r.unusable.empty() && !tools::interrupted())
     fail_unanswered(o);
   if (!o.quiet || o.format == "json") summarise(r, o.simulate, o.format == "json");
   if (r.unanswered && r.failed_proofs == 0) fail_unanswered(o);
@@ -96,7 +96,7 @@ Exit run_crowd(const ClientFlags& o, const CameraPath& path) {
   const Exit exit = judge(o, {r.updates, r.proofs, r.failed_proofs, r.lost == 0 ? r.gaps : 0});
   if (exit != Exit::ok) return exit;
   return enough(o, r.fewest_updates, 0,
-                ddgi::interrupted()            ? "interrupted"
+                tools::interrupted()           ? "interrupted"
                 : r.reason == Reason::shutdown ? "the server has ended"
                                                : "the time was over");
 }
@@ -119,7 +119,7 @@ Exit run_viewer(ClientFlags& o, const CameraPath& path, Painter* painter,
   const ViewerResult result = watch(o.viewer, path, painter);
   if (recording != nullptr) recording->finish();
   const bool failed = result.state == ClientLink::State::failed;
-  if (result.connections == 0 && !failed && !ddgi::interrupted()) fail_unanswered(o);
+  if (result.connections == 0 && !failed && !tools::interrupted()) fail_unanswered(o);
   const Recorded made = recording == nullptr
                             ? Recorded{}
                             : Recorded{recording->files(), recording->left(), recording->bytes()};
@@ -132,12 +132,12 @@ Exit run_viewer(ClientFlags& o, const CameraPath& path, Painter* painter,
       judge(o, {result.updates, result.statistics.proofs, result.statistics.failed_proofs, lost});
   if (exit != Exit::ok) return exit;
   const bool all_came = o.viewer.updates > 0 && result.updates >= o.viewer.updates;
-  if (result.state == ClientLink::State::connecting && !all_came && !ddgi::interrupted()) {
+  if (result.state == ClientLink::State::connecting && !all_came && !tools::interrupted()) {
     fail(Exit::io, "{}: the connection was lost, and no server answered until the time was over",
          o.connect);
   }
   const Exit came = enough(o, result.updates, result.frames,
-                           ddgi::interrupted()                        ? "interrupted"
+                           tools::interrupted()                       ? "interrupted"
                            : result.state == ClientLink::State::ended ? result.message
                                                                       : "the time was over");
   return came == Exit::ok ? recorded(o, recording) : came;
@@ -152,7 +152,7 @@ struct Loaded {
 Loaded load(const ClientFlags& o, const ddgi::RenderOptions& render) {
   Loaded loaded;
   if (!o.scene.scene.empty() || !o.scene.gltf.empty())
-    loaded.scene = std::make_unique<ddgi::Scene>(ddgi::load_scene(o.scene));
+    loaded.scene = std::make_unique<ddgi::Scene>(kinds::load_scene(o.scene));
   if (o.viewer.frames > 0)
     loaded.painter = std::make_unique<Painter>(
         loaded.scene.get(), render, o.threads,
@@ -203,7 +203,7 @@ Exit run(ClientFlags& o) {
     end_now(enough(o, 0, 0, "interrupted"));
   }
   const ddgi::Scene* const scene = loaded->scene.get();
-  if (scene != nullptr) o.viewer.scene = ddgi::scene_id(ddgi::scene_label(o.scene), *scene);
+  if (scene != nullptr) o.viewer.scene = ddgi::scene_id(kinds::scene_label(o.scene), *scene);
   const CameraPath path(o.camera, scene);
   // Without a view there is nothing that the server could choose by.
   o.viewer.subscribe_all = o.subscribe == "all" || (o.subscribe.empty() && !path.known());
@@ -244,5 +244,5 @@ int main(int argc, char** argv) {
       "  gi-client --connect 127.0.0.1:4600 --seconds 60 --record minute.gic\n"
       "  gi-client --connect wss://probes.example.org:8443 --token-file ada --scene villa\n"
       "  gi-client --connect 127.0.0.1:4600 --scene villa --simulate 50 --discard --seconds 10\n");
-  return ddgi::run_program(app, argc, argv, [&] { return run(options); });
+  return tools::run_program(app, argc, argv, [&] { return run(options); });
 }

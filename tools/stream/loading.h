@@ -1,8 +1,8 @@
 // Loading that does not keep a program from ending.
 #pragma once
 
+#include "common/program.h"
 #include "ddgi/parallel.h"
-#include "ddgi/program.h"
 
 #include <chrono>
 #include <cstdio>
@@ -25,7 +25,7 @@ template <typename Work>
   std::future<Result> result = task.get_future();
   std::thread worker(std::move(task));
   while (result.wait_for(std::chrono::milliseconds(5)) != std::future_status::ready) {
-    if (!ddgi::interrupted()) continue;
+    if (!tools::interrupted()) continue;
     worker.detach();
     return std::nullopt;
   }

@@ -2,8 +2,8 @@
 
 #include "clock.h"
 #include "common/preview_picture.h"
+#include "common/program.h"
 #include "ddgi/picture.h"
-#include "ddgi/program.h"
 #include "dump/dump.h"
 #include "dump/error.h"
 
@@ -41,7 +41,7 @@ Painter::Painter(const ddgi::Scene* scene, const ddgi::RenderOptions& options, u
       options_(options),
       pictures_(std::move(pictures)),
       drawing_(std::move(drawing)),
-      pool_(threads, ddgi::interrupted) {
+      pool_(threads, tools::interrupted) {
   if (scene_ != nullptr) rays_ = std::make_unique<ddgi::RayScene>(*scene_);
 }
 

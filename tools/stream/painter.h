@@ -2,8 +2,8 @@
 #pragma once
 
 #include "ddgi/client_renderer.h"
-#include "kinds/traced_kind.h"
 #include "picture_folder.h"
+#include "programs/kind_table.h"
 
 #include <gicodec/client.h>
 

@@ -9,9 +9,9 @@
 #include "dump/error.h"
 #include "dump/geometry_attributes.h"
 #include "dump/sequence.h"
-#include "kinds/source_container.h"
-#include "kinds/stored_volume.h"
 #include "log.h"
+#include "programs/source_container.h"
+#include "programs/stored_volume.h"
 #include "recording.h"
 
 #include <gicodec/probes.h>

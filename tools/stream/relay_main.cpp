@@ -1,7 +1,7 @@
 // gi-relay: a bad network between gi-client and gi-server: drops, delays, shuffles and limits UDP
 // packets.
 #include "clock.h"
-#include "ddgi/program.h"
+#include "common/program.h"
 #include "dump/error.h"
 #include "dump/text.h"
 #include "log.h"
@@ -132,7 +132,7 @@ class Relay {
 
   void run() {
     const double end = options_.seconds > 0 ? now() + options_.seconds : 1e300;
-    while (!ddgi::interrupted() && now() < end) {
+    while (!tools::interrupted() && now() < end) {
       wait();
       receive_all();
       send_due();
@@ -255,7 +255,7 @@ int main(int argc, char** argv) {
                   "  gi-relay --listen 127.0.0.1:4700 --to 127.0.0.1:4600 --loss 5 --delay "
                   "50 --jitter 20\n",
                   kExitCodes));
-  return ddgi::run_program(app, argc, argv, [&] {
+  return tools::run_program(app, argc, argv, [&] {
     Relay(o).run();
     return Exit::ok;
   });

@@ -9,7 +9,7 @@ namespace gicodec::streaming {
 namespace {
 
 void add_source_flags(tools::Command& app, ServerFlags& o) {
-  ddgi::add_scene_flags(app, o.scene);
+  kinds::add_scene_flags(app, o.scene);
   kinds::add_kind_flags(app, o.kind);
   app.add_option("--play", o.play,
                  "Stream a container or a folder of dumps instead of tracing; the scene, if known, "

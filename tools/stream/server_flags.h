@@ -1,8 +1,8 @@
 // What gi-server can be told on its command line.
 #pragma once
 
-#include "ddgi/scene_source.h"
-#include "kinds/kind_flags.h"
+#include "programs/kind_flags.h"
+#include "programs/scene_flags.h"
 #include "service.h"
 #include "token.h"
 
@@ -18,7 +18,7 @@ namespace gicodec::streaming {
 /// As the command line gives them.
 struct ServerFlags {
   std::string listen, listen_web, users, play, region, format = "text";
-  ddgi::SceneFlags scene;
+  kinds::SceneFlags scene;
   kinds::KindFlags kind;
   TokenFlags token;
   ServiceOptions service;

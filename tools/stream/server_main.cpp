@@ -1,7 +1,7 @@
 // gi-server: streams the light of a scene to clients, of any kind, traced live or played.
 #include "clock.h"
 #include "common/error_flags.h"
-#include "ddgi/program.h"
+#include "common/program.h"
 #include "ddgi/scene_id.h"
 #include "ddgi/scenes.h"
 #include "dump/dump.h"
@@ -35,7 +35,7 @@ kinds::Source make_source(const ServerFlags& o) {
     return play_source(
         o.play, {o.loop, o.service.rate, o.allow_incomplete, o.server.settings.isa, o.max_memory});
   }
-  ddgi::Scene scene = ddgi::load_scene(o.scene);
+  ddgi::Scene scene = kinds::load_scene(o.scene);
   place_volume(o.scene, scene);
   return trace_kind(o.kind, std::move(scene), scene_label(o.scene), 1, o.trace_threads);
 }
@@ -43,16 +43,16 @@ kinds::Source make_source(const ServerFlags& o) {
 /// The scene for culling, and for telling clients which one it is: that of the flags, or the
 /// built-in one that a recording names.
 std::optional<ddgi::Scene> scene_of(const ServerFlags& o, kinds::Source& source) {
-  ddgi::SceneFlags flags = o.scene;
+  kinds::SceneFlags flags = o.scene;
   if (flags.scene.empty() && flags.gltf.empty()) {
     auto recorded = ddgi::make_scene(source.scene.name);
     if (recorded) source.scene = ddgi::scene_id(source.scene.name, *recorded);
     return recorded;
   }
-  const std::string label = ddgi::scene_name(ddgi::scene_label(flags));
+  const std::string label = ddgi::scene_name(kinds::scene_label(flags));
   if (!source.scene.name.empty() && source.scene.name != label)
     fail(Exit::bad_input, "{}: was traced in {}, not in {}", o.play, source.scene.name, label);
-  ddgi::Scene scene = ddgi::load_scene(flags);
+  ddgi::Scene scene = kinds::load_scene(flags);
   if (source.scene.geometry == 0) source.scene = ddgi::scene_id(label, scene);
   return scene;
 }
@@ -301,7 +301,7 @@ int main(int argc, char** argv) {
       "  gi-server --scene tomb --fine 8x4x8 --fine-spacing 0.5 --stats json\n"
       "  gi-server --scene tomb --kind photons --listen 127.0.0.1:4600\n",
       kinds::settings_help(), kExitCodes));
-  return ddgi::run_program(app, argc, argv, [&] {
+  return tools::run_program(app, argc, argv, [&] {
     constexpr std::array kOfProbes{"--grid",
                                    "--bounds",
                                    "--color-interval",

@@ -1,8 +1,8 @@
 #include "service.h"
 
 #include "clock.h"
+#include "common/program.h"
 #include "common/volume_words.h"
-#include "ddgi/program.h"
 #include "dump/dump.h"
 #include "dump/error.h"
 
@@ -330,7 +330,7 @@ void Service::serve() {
   const double period = 1 / options_.rate;
   double due = now(), finished = -1;
   NetEvent event;
-  while (!ddgi::interrupted()) {
+  while (!tools::interrupted()) {
     // Late only because a frame is not ready: looks for it now and then.
     const double left = std::max(due - now(), may_update() ? 0 : kPoll);
     const auto wait = static_cast<unsigned>(std::clamp(std::ceil(left * 1e3), 0.0, 5.0));

@@ -3,7 +3,7 @@
 
 #include "dump/dump.h"
 #include "dump/error.h"
-#include "kinds/traced_kind.h"
+#include "programs/kind_table.h"
 
 #include <algorithm>
 

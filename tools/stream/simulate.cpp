@@ -2,7 +2,7 @@
 
 #include "client_link.h"
 #include "clock.h"
-#include "ddgi/program.h"
+#include "common/program.h"
 #include "ddgi/scene_id.h"
 #include "dump/error.h"
 
@@ -58,7 +58,7 @@ class Crowd {
   SimulateResult run() {
     const double begin = now();
     double heard = begin;
-    while (!ddgi::interrupted()) {
+    while (!tools::interrupted()) {
       const double at = now();
       bool all_done = true, any_open = false;
       for (Simulated& c : clients_) {

@@ -1,8 +1,8 @@
 #include "viewer.h"
 
 #include "clock.h"
+#include "common/program.h"
 #include "common/volume_words.h"
-#include "ddgi/program.h"
 #include "ddgi/scene_id.h"
 #include "dump/dump.h"
 #include "dump/error.h"
@@ -46,7 +46,7 @@ class Viewer {
 
   ViewerResult run() {
     if (path_.known()) look(0);
-    while (!ddgi::interrupted()) {
+    while (!tools::interrupted()) {
       const double at = now();
       // Asked first: what came before the end is still taken.
       const bool ended =
@@ -160,7 +160,7 @@ class Viewer {
 
   ViewerResult finish() {
     if (shown_ > 0) clear_status();
-    const double end = now() + (ddgi::interrupted() ? kHaste : kSettle);
+    const double end = now() + (tools::interrupted() ? kHaste : kSettle);
     while (!client_.idle() && now() < end)
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     result_.round_trip_ms = link_.round_trip_ms();

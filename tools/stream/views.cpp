@@ -1,7 +1,7 @@
 #include "views.h"
 
 #include "clock.h"
-#include "ddgi/program.h"
+#include "common/program.h"
 
 #include <gicodec/probes.h>
 
@@ -89,7 +89,7 @@ std::vector<Position> Views::hits(const Viewpoint& view) const {
       std::max(1.0F, std::round(std::sqrt(static_cast<float>(samples_) / aspect))));
   const std::uint32_t columns = std::max(1U, samples_ / rows);
   std::vector<Position> points;
-  for (std::uint32_t y = 0; y < rows && !ddgi::interrupted(); ++y) {
+  for (std::uint32_t y = 0; y < rows && !tools::interrupted(); ++y) {
     for (std::uint32_t x = 0; x < columns; ++x) {
       const float sx = 2 * (static_cast<float>(x) + 0.5F) / static_cast<float>(columns) - 1;
       const float sy = 1 - 2 * (static_cast<float>(y) + 0.5F) / static_cast<float>(rows);

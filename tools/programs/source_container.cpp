@@ -43,7 +43,7 @@ void SourceContainer::add(std::uint64_t frame, const SourceFrame& contents) {
   std::size_t texture = 0;
   for (std::size_t v = 0; v < encoders_.size(); ++v) {
     const auto& textures = contents.volumes[v].textures;
-    const std::vector<ddgi::Texels> texels(textures.begin(), textures.end());
+    const std::vector<Texels> texels(textures.begin(), textures.end());
     for (const Packet& packet : encoders_[v].encode(texels)) {
       sums_[texture++].bytes += packet.size();
       output_.add(frame, packet);

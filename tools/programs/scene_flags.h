@@ -1,14 +1,14 @@
-// Which scene and which volume the command line means; shared by both programs.
+// Which scene and which volume the command line means.
 #pragma once
 
 #include "common/command_line.h"
-#include "scene.h"
-#include "volume.h"
+#include "ddgi/scene.h"
+#include "ddgi/volume.h"
 
 #include <optional>
 #include <string>
 
-namespace gicodec::ddgi {
+namespace gicodec::kinds {
 
 struct SceneFlags {
   std::string scene;     ///< name of a built-in scene
@@ -20,15 +20,15 @@ struct SceneFlags {
 
 void add_scene_flags(tools::Command& app, SceneFlags& flags);
 /// Throws tools::Error for an unknown scene or a file that cannot be used.
-[[nodiscard]] Scene load_scene(const SceneFlags& flags);
+[[nodiscard]] ddgi::Scene load_scene(const SceneFlags& flags);
 /// "villa" or "room.glb", for messages, as an attribute and in JSON: utf8_text().
 [[nodiscard]] std::string scene_label(const SceneFlags& flags);
 /// Grid and box of the flags become the scene's own. Throws tools::Error of Exit::usage.
-void place_volume(const SceneFlags& flags, Scene& scene);
+void place_volume(const SceneFlags& flags, ddgi::Scene& scene);
 /// Grid and place by the flags, else by the scene.
-[[nodiscard]] VolumeShape volume_of(const SceneFlags& flags, const Scene& scene);
+[[nodiscard]] ddgi::VolumeShape volume_of(const SceneFlags& flags, const ddgi::Scene& scene);
 /// "1,2.5,-3" with exactly `count` finite numbers. Throws tools::Error of Exit::usage.
 [[nodiscard]] std::vector<float> numbers(const std::string& text, std::size_t count,
                                          const char* what);
 
-}  // namespace gicodec::ddgi
+}  // namespace gicodec::kinds

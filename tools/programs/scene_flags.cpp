@@ -1,24 +1,28 @@
-#include "scene_source.h"
+#include "scene_flags.h"
 
+#include "ddgi/gltf.h"
+#include "ddgi/scenes.h"
 #include "dump/dump.h"
 #include "dump/error.h"
 #include "dump/text.h"
-#include "gltf.h"
-#include "scenes.h"
 
 #include <gicodec/probes.h>
 
 #include <charconv>
 #include <filesystem>
 
-namespace gicodec::ddgi {
+namespace gicodec::kinds {
 
+using ddgi::Box;
+using ddgi::Scene;
+using ddgi::SceneInfo;
+using ddgi::VolumeShape;
 using tools::Exit;
 using tools::fail;
 
 void add_scene_flags(tools::Command& app, SceneFlags& flags) {
   std::string names;
-  for (const SceneInfo& info : built_in_scenes()) {
+  for (const SceneInfo& info : ddgi::built_in_scenes()) {
     names += fmt::format("{}{}", names.empty() ? "" : ", ", info.name);
   }
   auto* scene =
@@ -40,12 +44,12 @@ void add_scene_flags(tools::Command& app, SceneFlags& flags) {
 }
 
 Scene load_scene(const SceneFlags& flags) {
-  if (!flags.gltf.empty()) return load_gltf(flags.gltf, flags.outside);
+  if (!flags.gltf.empty()) return ddgi::load_gltf(flags.gltf, flags.outside);
   if (flags.scene.empty())
     fail(Exit::usage, "--scene or --gltf is needed; --help lists the scenes");
-  if (auto scene = make_scene(flags.scene)) return *std::move(scene);
+  if (auto scene = ddgi::make_scene(flags.scene)) return *std::move(scene);
   std::string names;
-  for (const SceneInfo& info : built_in_scenes()) names += fmt::format(" {}", info.name);
+  for (const SceneInfo& info : ddgi::built_in_scenes()) names += fmt::format(" {}", info.name);
   fail(Exit::usage, "unknown scene {}; there are:{}", flags.scene, names);
 }
 
@@ -89,8 +93,8 @@ Placing placing(const SceneFlags& flags, const Scene& scene) {
     grid = *parsed;
   }
   if (validate(ddgi_irradiance(grid)) != Status::ok ||
-      std::uint64_t{grid.x} * grid.y * grid.z > kMaxProbes) {
-    fail(Exit::usage, "--grid: 1 to {} probes can be traced, not {}", kMaxProbes,
+      std::uint64_t{grid.x} * grid.y * grid.z > ddgi::kMaxProbes) {
+    fail(Exit::usage, "--grid: 1 to {} probes can be traced, not {}", ddgi::kMaxProbes,
          tools::to_string(grid));
   }
   Box box = scene.volume;
@@ -115,7 +119,7 @@ void place_volume(const SceneFlags& flags, Scene& scene) {
 
 VolumeShape volume_of(const SceneFlags& flags, const Scene& scene) {
   const Placing p = placing(flags, scene);
-  return spread(p.grid, p.box);
+  return ddgi::spread(p.grid, p.box);
 }
 
-}  // namespace gicodec::ddgi
+}  // namespace gicodec::kinds

@@ -5,7 +5,7 @@
 
 #include <cstring>
 
-namespace gicodec::ddgi {
+namespace gicodec::kinds {
 namespace {
 
 /// Calls visit(offset, bytes) for each row of a block in a texture, tightly packed, until it
@@ -93,4 +93,4 @@ std::vector<Packet> VolumeEncoders::encode(std::span<const Texels> textures) {
   return packets;
 }
 
-}  // namespace gicodec::ddgi
+}  // namespace gicodec::kinds

@@ -1,4 +1,4 @@
-#include "traced_kind.h"
+#include "kind_table.h"
 
 #include "ao/ao.h"
 #include "maps/maps.h"

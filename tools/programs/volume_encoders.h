@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace gicodec::ddgi {
+namespace gicodec::kinds {
 
 /// Texels of one of a volume's textures, tightly packed.
 using Texels = std::span<const std::byte>;
@@ -35,4 +35,4 @@ class VolumeEncoders {
   std::vector<std::vector<std::byte>> before_;
 };
 
-}  // namespace gicodec::ddgi
+}  // namespace gicodec::kinds

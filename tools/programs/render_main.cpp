@@ -1,17 +1,18 @@
 // gi-render: the picture a thin client draws from decoded light.
+#include "kind_flags.h"
+#include "scene_flags.h"
+#include "stored_volume.h"
+
 #include "common/frame_range.h"
+#include "common/program.h"
+#include "ddgi/framing.h"
+#include "ddgi/picture.h"
+#include "ddgi/scene_id.h"
+#include "ddgi/scenes.h"
 #include "dump/dump.h"
 #include "dump/error.h"
 #include "dump/file.h"
 #include "dump/sequence.h"
-#include "framing.h"
-#include "kinds/kind_flags.h"
-#include "kinds/stored_volume.h"
-#include "picture.h"
-#include "program.h"
-#include "scene_id.h"
-#include "scene_source.h"
-#include "scenes.h"
 
 #include <gicodec/gicodec.h>
 
@@ -23,8 +24,8 @@ namespace {
 
 using namespace gicodec;
 using namespace gicodec::ddgi;
-using kinds::FrameFacts;
-using kinds::StoredVolume;
+using namespace gicodec::kinds;
+using tools::check_interrupt;
 using tools::Exit;
 using tools::fail;
 
@@ -38,7 +39,7 @@ struct Options {
   float gain = 8;
   unsigned threads = 0;
   tools::DecoderFlags decoding;
-  kinds::DrawingFlags drawing;
+  DrawingFlags drawing;
   bool compare = false, quiet = false, overwrite = false, allow_incomplete = false;
 };
 
@@ -82,7 +83,7 @@ void add_flags(tools::Command& app, Options& o) {
   app.add_option("--threads", o.threads, "Threads to use; default: one per processor")
       ->allow(tools::in_range(1, 256));
   tools::add_memory_flag(app, o.decoding, "; drawing may take as much again");
-  kinds::add_drawing_flag(app, o.drawing);
+  add_drawing_flag(app, o.drawing);
   app.add_flag("-q,--quiet", o.quiet, "Nothing but errors");
 }
 
@@ -119,11 +120,11 @@ class Client {
 
   /// Lit by `shown`; by direct light only where that is nullptr.
   [[nodiscard]] Picture draw(StoredVolume* shown, const RenderOptions& render_options) {
-    std::unique_ptr<kinds::VolumeLight> light;
+    std::unique_ptr<VolumeLight> light;
     if (shown != nullptr && render_options.mode != RenderMode::direct) {
       if (shown->kind().name == "probes") place_probes(*shown);
-      light = kinds::make_light(shown->kind(), rays_, shown->desc(),
-                                {options_.decoding.memory, options_.drawing.set});
+      light = make_light(shown->kind(), rays_, shown->desc(),
+                         {options_.decoding.memory, options_.drawing.set});
       shown->show(options_.frame, *light);
     }
     Picture picture = render(rays_, light.get(), camera_, render_options, pool_);
@@ -210,7 +211,7 @@ RenderOptions render_options(const Options& o) {
   r.mode = o.mode == "direct" ? RenderMode::direct
            : o.mode == "gi"   ? RenderMode::gi
                               : RenderMode::full;
-  r.stopped = interrupted;
+  r.stopped = tools::interrupted;
   return r;
 }
 
@@ -323,7 +324,7 @@ int main(int argc, char** argv) {
       "gi-render"};
   Options options;
   add_flags(app, options);
-  app.footer(kinds::drawing_help() +
+  app.footer(drawing_help() +
              "The scene may be left out where the textures' attributes name a built-in one.\n\n"
              "Exit codes:\n"
              "  0  success; with --compare no pixel differs\n"
@@ -338,5 +339,5 @@ int main(int argc, char** argv) {
              "  gi-render --stream villa.gic --dumps dumps/villa --frame 12 --compare\n"
              "  gi-render --stream lossy.gic --dumps dumps/villa --mode difference -o diff.png\n"
              "  gi-render --scene street --mode direct --time 2.5 -o direct.exr\n");
-  return run_program(app, argc, argv, [&] { return run(options); });
+  return tools::run_program(app, argc, argv, [&] { return run(options); });
 }

@@ -1,10 +1,10 @@
 // Which kind of payload is traced, and how: shared by gi-trace and gi-server.
 #pragma once
 
-#include "traced_kind.h"
+#include "kind_table.h"
 
 #include "common/command_line.h"
-#include "ddgi/scene_source.h"
+#include "scene_flags.h"
 
 #include <map>
 #include <span>

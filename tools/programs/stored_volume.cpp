@@ -2,8 +2,8 @@
 
 #include "source_container.h"
 
+#include "common/program.h"
 #include "common/volume_words.h"
-#include "ddgi/program.h"
 #include "ddgi/volume.h"
 #include "dump/error.h"
 #include "dump/sequence.h"
@@ -135,7 +135,7 @@ void StoredVolume::show(std::uint64_t frame, VolumeLight& light) {
   if (!input_) return update(frame, light);
   if (!kind_->remembers) input_->seek(frame);
   while (!input_->last_frame() || *input_->last_frame() < frame) {
-    ddgi::check_interrupt();
+    tools::check_interrupt();
     if (!input_->next_frame() || input_->frame() > frame) {
       fail(Exit::bad_input, "{}: has no frame {}; {}", source_, frame, input_->frames_there());
     }

@@ -1,12 +1,12 @@
 // A source's frames as a container.
 #pragma once
 
-#include "source.h"
+#include "kinds/source.h"
 
 #include "common/container_output.h"
 #include "common/frame_times.h"
-#include "ddgi/volume_encoders.h"
 #include "dump/file.h"
+#include "volume_encoders.h"
 
 #include <cstdint>
 #include <string>
@@ -35,7 +35,7 @@ class SourceContainer {
   [[nodiscard]] const std::vector<Sum>& sums() const { return sums_; }
 
  private:
-  std::vector<ddgi::VolumeEncoders> encoders_;  ///< by volume
+  std::vector<VolumeEncoders> encoders_;  ///< by volume
   std::vector<Sum> sums_;
   tools::ContainerOutput output_;
 };

@@ -1,6 +1,6 @@
 #include "modules/module.h"
 
-#include "dump/error.h"
+#include "error.h"
 #include "modules/hevc.h"
 #include "modules/images.h"
 
@@ -46,8 +46,8 @@ bool is_whole(const std::string& path) {
          std::size_t{head.e_shnum} * head.e_shentsize <= size - head.e_shoff;
 }
 
-}  // namespace
-
+/// The table of a module, from the folders where the program finds its libraries; it stays loaded.
+/// `purpose`: what it is for, for messages.
 const ModuleHead* load_module(const char* name, const char* purpose) {
   for (const std::string& folder : library_folders()) {
     if (!folder.starts_with('/')) continue;  // never from where the user happens to stand
@@ -77,6 +77,8 @@ const ModuleHead* load_module(const char* name, const char* purpose) {
        "folder of the programs",
        name, purpose);
 }
+
+}  // namespace
 
 const ImageModule& image_module() {
   static const auto* const module =

@@ -1,6 +1,6 @@
 #include "kind_flags.h"
 
-#include "ddgi/program.h"
+#include "common/program.h"
 #include "ddgi/scene_id.h"
 #include "dump/error.h"
 
@@ -108,7 +108,7 @@ Source trace_kind(const KindFlags& flags, ddgi::Scene scene, const std::string& 
   const TracedKind& kind = traced_kind(flags);
   const SceneId id = ddgi::scene_id(label, scene);
   Source source =
-      kind.trace({std::move(scene), settings_of(kind, flags), seed, threads, ddgi::interrupted});
+      kind.trace({std::move(scene), settings_of(kind, flags), seed, threads, tools::interrupted});
   source.scene = id;
   return source;
 }

@@ -1,7 +1,7 @@
 // A volume of a traced kind from a container or from dumps, as a client would hold it.
 #pragma once
 
-#include "traced_kind.h"
+#include "kind_table.h"
 
 #include "common/container_input.h"
 

@@ -1,0 +1,33 @@
+// The frame of all programs: parsing, exit codes, interrupts.
+#pragma once
+
+#include "command_line.h"
+#include "dump/error.h"
+
+#include <functional>
+#include <string>
+
+namespace gicodec::tools {
+
+/// Thrown by check_interrupt(), so that temporary files are removed.
+struct Interrupted {
+  int signal;
+};
+/// To be called now and then in long work.
+void check_interrupt();
+/// For programs that end in their own way after SIGINT, SIGTERM or SIGHUP. Any thread may ask.
+[[nodiscard]] bool interrupted() noexcept;
+
+/// How these signals are taken.
+enum class Interrupts : std::uint8_t {
+  noted,  ///< the program looks at them when it does
+  /// What waits for a pipe ends as well; a second signal ends the program.
+  once,
+};
+
+/// Parses and runs; returns what main() is to return. Errors go to standard error behind the
+/// program's name. `formats`: what --version tells besides.
+int run_program(Command& app, int argc, char** argv, const std::function<Exit()>& run,
+                Interrupts interrupts = Interrupts::noted, const std::string& formats = "");
+
+}  // namespace gicodec::tools

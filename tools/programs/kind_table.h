@@ -1,0 +1,33 @@
+// The table of kinds that the programs trace and draw.
+#pragma once
+
+#include "kinds/traced_kind.h"
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace gicodec::kinds {
+
+/// How light is drawn with: what --max-memory and --set say.
+struct DrawingFlags {
+  std::uint64_t memory = 4096;     ///< MiB that it may take, with its textures
+  std::vector<std::string> set{};  ///< NAME=VALUE
+};
+/// Throws tools::Error of Exit::bad_input where it would take more, of Exit::usage for settings
+/// that the kind does not have.
+[[nodiscard]] std::unique_ptr<VolumeLight> make_light(const TracedKind& kind,
+                                                      const ddgi::RayScene& scene,
+                                                      const VolumeDesc& desc,
+                                                      const DrawingFlags& flags);
+
+[[nodiscard]] std::span<const TracedKind> traced_kinds();
+/// Whether viewers need only some of its blocks.
+[[nodiscard]] bool is_culled(const SourceVolume& volume);
+/// nullptr for a name that is none of these.
+[[nodiscard]] const TracedKind* find_traced_kind(std::string_view name);
+
+}  // namespace gicodec::kinds
