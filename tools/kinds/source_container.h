@@ -5,8 +5,9 @@
 
 #include "common/container_output.h"
 #include "common/frame_times.h"
-#include "ddgi/volume_encoders.h"
 #include "dump/file.h"
+
+#include <gicodec/volume_encoder.h>
 
 #include <cstdint>
 #include <string>
@@ -35,7 +36,7 @@ class SourceContainer {
   [[nodiscard]] const std::vector<Sum>& sums() const { return sums_; }
 
  private:
-  std::vector<ddgi::VolumeEncoders> encoders_;  ///< by volume
+  std::vector<VolumeEncoder> encoders_;  ///< by volume
   std::vector<Sum> sums_;
   tools::ContainerOutput output_;
 };
