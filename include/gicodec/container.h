@@ -3,6 +3,7 @@
 #pragma once
 
 #include <gicodec/api.h>
+#include <gicodec/delivery.h>
 #include <gicodec/io.h>
 #include <gicodec/kind.h>
 #include <gicodec/packet.h>
@@ -74,12 +75,11 @@ struct ContainerDescription {
 Status add_volume(ContainerDescription& description, std::string name, const VolumeDesc& volume,
                   std::span<const Kind* const> kinds = {});
 
-/// A texture's part that has packets of its own: region 0 of a volume that is one, else 1 + the
-/// region of RegionGrid. Of a packet of a Host it is OutgoingPacket::stream.region + 1, in either
-/// case (StreamId::kWholeVolume + 1 is 0).
+/// A texture's part that has packets of its own: a region as RegionGrid counts them, or
+/// StreamId::kWholeVolume in a volume that is not cut.
 struct TextureRegion {
   std::uint8_t texture_id = 0;
-  std::uint32_t region = 0;
+  std::uint32_t region = StreamId::kWholeVolume;
   friend constexpr bool operator==(const TextureRegion&, const TextureRegion&) = default;
 };
 /// Writes a container front to back, without seeking. A call that fails changes nothing, whether
@@ -96,8 +96,9 @@ class ContainerWriter {
   /// at most one packet. The packet's texture_id says which texture it belongs to; it may be lossy
   /// only where that one's largest error is not 0. wrong_frame; unknown_texture; unknown_region;
   /// description_mismatch for a keyframe that was not made for the region's texture
-  /// (region_texture()), or the whole one in region 0, and for what is lossy where nothing may be.
-  Status add(std::uint64_t frame, std::span<const std::byte> packet, std::uint32_t region = 0);
+  /// (region_texture()), or the whole one, and for what is lossy where nothing may be.
+  Status add(std::uint64_t frame, std::span<const std::byte> packet,
+             std::uint32_t region = StreamId::kWholeVolume);
   /// Brings the index up to date, for whoever reads the file while it grows; every 1024 packets
   /// this happens by itself.
   Status flush();
@@ -119,7 +120,7 @@ class ContainerWriter {
 /// A packet as read from a container.
 struct ContainerPacket {
   std::uint64_t frame = 0;
-  std::uint32_t region = 0;  ///< see TextureRegion
+  std::uint32_t region = StreamId::kWholeVolume;  ///< see TextureRegion
   std::uint8_t texture_id = 0;
   bool keyframe = false;
   std::vector<std::byte> bytes;
