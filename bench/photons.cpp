@@ -5,12 +5,13 @@
 #include "ddgi/noise.h"
 #include "ddgi/picture.h"
 #include "ddgi/scenes.h"
+#include "dump/error.h"
 #include "photons/held_photons.h"
 #include "photons/reference.h"
 #include "photons/splatting.h"
-#include "programs/volume_encoders.h"
 
 #include <gicodec/encoder.h>
+#include <gicodec/volume_encoder.h>
 
 #include <fmt/core.h>
 #include <zstd.h>
@@ -161,6 +162,12 @@ void add_sizes(Sizes& sizes, Encoder& native, const TextureDesc& desc, std::uint
   sizes.mesh += mesh_size(sorted);
 }
 
+std::size_t bytes_of(const std::vector<Packet>& packets) {
+  std::size_t bytes = 0;
+  for (const Packet& packet : packets) bytes += packet.size();
+  return bytes;
+}
+
 struct Case {
   const char* scene;
   double start, fps;
@@ -297,7 +304,9 @@ void print_table_2(const Case& c, const std::vector<std::string>& settings, bool
   const ddgi::Scene scene = *ddgi::make_scene(c.scene);
   ddgi::RayScene rays(scene);
   const auto light = photons::light(rays, volume.desc);
-  kinds::VolumeEncoders native(volume.desc, "native", c.scene), zstd(volume.desc, "zstd", c.scene);
+  auto native = tools::take(VolumeEncoder::create(volume.desc, {.gop = 0}), c.scene);
+  auto zstd =
+      tools::take(VolumeEncoder::create(volume.desc, {.backend = "zstd", .gop = 0}), c.scene);
   Latency latency;
   double trace = 0, client = 0;
   std::size_t bytes = 0, by_zstd = 0, stored = 0, batches = 0;
@@ -307,10 +316,9 @@ void print_table_2(const Case& c, const std::vector<std::string>& settings, bool
     time = c.start + f / c.fps;
     const kinds::SourceFrame frame = source.next({time, {}});
     const auto& textures = frame.volumes[0].textures;
-    const std::vector<ddgi::Texels> texels(textures.begin(), textures.end());
-    std::size_t sent = 0, sent_zstd = 0;
-    for (const Packet& p : native.encode(texels)) sent += p.size();
-    for (const Packet& p : zstd.encode(texels)) sent_zstd += p.size();
+    const std::vector<ConstTextureView> views(textures.begin(), textures.end());
+    const std::size_t sent = bytes_of(tools::take(native.encode(views), c.scene));
+    const std::size_t sent_zstd = bytes_of(tools::take(zstd.encode(views), c.scene));
     rays.set_state(scene.state_at(time));
     latency.look(rays.state(), textures[1]);
     std::vector<kinds::HeldTexture> held;

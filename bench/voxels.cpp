@@ -10,12 +10,13 @@
 #include "voxels/cut.h"
 #include "voxels/voxels.h"
 
-#include <gicodec/decoder.h>
-#include <gicodec/encoder.h>
+#include <gicodec/volume_decoder.h>
+#include <gicodec/volume_encoder.h>
 
 #include <fmt/core.h>
 #include <zstd.h>
 
+#include <array>
 #include <cstdio>
 #include <optional>
 
@@ -153,70 +154,56 @@ std::size_t openvdb(const Case& c) {
   return openvdb_zip(levels);
 }
 
-/// Both textures of the volume, as packets of all that changed, or of some; checked by decoding.
+std::size_t bytes_of(const std::vector<Packet>& packets) {
+  std::size_t bytes = 0;
+  for (const Packet& packet : packets) bytes += packet.size();
+  return bytes;
+}
+
+/// The volume as packets of all that changed, or of some; checked by decoding.
 class Stream {
  public:
   explicit Stream(const Case& c)
-      : bricks_(encoder(c.desc(0))),
-        light_(encoder(c.desc(1))),
-        held_bricks_(tools::take(Decoder::create(c.desc(0), decoding()), "decoder")),
-        held_light_(tools::take(Decoder::create(c.desc(1), decoding()), "decoder")) {}
+      : encoder_(tools::take(VolumeEncoder::create(c.volume, {.gop = 0}), "encoder")),
+        decoder_(tools::take(VolumeDecoder::create(c.volume, {.limits = kNoLimits}), "decoder")) {}
 
-  /// Bytes of both packets.
-  std::size_t update(const Case& c) {
-    const auto bricks = c.server.pool().bricks(), light = c.server.pool().light();
-    tools::check(light_.set_presence(bricks), "presence");
-    return take(c, tools::take(bricks_.encode(ConstTextureView(bricks)), "bricks"),
-                tools::take(light_.encode(ConstTextureView(light)), "light"), {});
-  }
-  /// What changed of a client's slots: those in the mask.
-  std::size_t update(const Case& c, const BlockMask& mask) {
-    const auto bricks = c.server.pool().bricks(), light = c.server.pool().light();
+  /// Bytes of both packets: of all that changed, or what changed of a client's slots, those in the
+  /// mask.
+  std::size_t update(const Case& c, const BlockMask& mask = {}) {
     std::vector<std::uint32_t> some;
     for (std::uint32_t slot = 0; slot < mask.size(); ++slot) {
       if (mask[slot] != 0 && differs(c, slot)) some.push_back(slot);
     }
-    if (some.empty()) return 0;
-    tools::check(light_.set_presence(bricks), "presence");
-    return take(c, tools::take(bricks_.encode(ConstTextureView(bricks), some), "bricks"),
-                tools::take(light_.encode(ConstTextureView(light), some), "light"), mask);
-  }
-
- private:
-  std::size_t take(const Case& c, const Packet& places, const Packet& packet,
-                   const BlockMask& mask) {
-    tools::check(held_bricks_.decode(places), "bricks");
-    tools::check(held_light_.set_presence(held_bricks_.records()), "presence");
-    tools::check(held_light_.decode(packet), "light");
+    if (!mask.empty() && some.empty()) return 0;
+    const auto selection = mask.empty() ? Selection::changed() : Selection(some);
+    const auto packets = tools::take(encoder_.encode(views(c), selection), "voxels");
+    tools::check(decoder_.decode(packets), "voxels");
     for (std::uint32_t slot = 0; slot < c.server.pool().slots(); ++slot) {
       if ((mask.empty() || mask[slot] != 0) && differs(c, slot)) {
         tools::fail(tools::Exit::internal, "voxels are not lossless");
       }
     }
-    return places.size() + packet.size();
+    return bytes_of(packets);
   }
+  static std::array<ConstTextureView, 2> views(const Case& c) {
+    return {c.server.pool().bricks(), c.server.pool().light()};
+  }
+
+ private:
+  static constexpr DecodeLimits kNoLimits{.max_texture_bytes = UINT64_MAX,
+                                          .max_packet_bytes = SIZE_MAX,
+                                          .max_total_bytes = UINT64_MAX,
+                                          .max_work_bytes = UINT64_MAX};
   [[nodiscard]] bool differs(const Case& c, std::uint32_t slot) const {
-    const auto same = [slot](std::span<const std::byte> a, std::span<const std::byte> b,
-                             std::size_t size) {
-      return std::ranges::equal(a.subspan(slot * size, size), b.subspan(slot * size, size));
+    const auto same = [&](std::uint8_t texture, std::span<const std::byte> now) {
+      const std::size_t size = block_bytes(c.desc(texture)), at = slot * size;
+      return std::ranges::equal(decoder_.decoder(texture)->records().subspan(at, size),
+                                now.subspan(at, size));
     };
-    return !same(held_bricks_.records(), c.server.pool().bricks(), block_bytes(c.desc(0))) ||
-           !same(held_light_.records(), c.server.pool().light(), block_bytes(c.desc(1)));
+    return !same(0, c.server.pool().bricks()) || !same(1, c.server.pool().light());
   }
-  static Encoder encoder(const TextureDesc& desc) {
-    EncoderOptions options;
-    options.gop = 0;
-    return tools::take(Encoder::create(desc, options), "encoder");
-  }
-  static DecoderOptions decoding() {
-    DecoderOptions options;
-    options.limits.max_texture_bytes = options.limits.max_total_bytes = UINT64_MAX;
-    options.limits.max_packet_bytes = SIZE_MAX;
-    options.limits.max_work_bytes = UINT64_MAX;
-    return options;
-  }
-  Encoder bricks_, light_;
-  Decoder held_bricks_, held_light_;
+  VolumeEncoder encoder_;
+  VolumeDecoder decoder_;
 };
 
 double ratio(std::size_t a, std::size_t b) {
@@ -338,9 +325,7 @@ void print_pictures(const Options& o, const std::string& scene) {
     return ddgi::render(rays, &client, camera, render, pool);
   };
   const ddgi::Picture whole = draw({});
-  Encoder places = tools::take(Encoder::create(c.desc(0)), "encoder");
-  Encoder lights = tools::take(Encoder::create(c.desc(1)), "encoder");
-  tools::check(lights.set_presence(bricks), "presence");
+  auto encoder = tools::take(VolumeEncoder::create(c.volume), "encoder");
   std::vector<std::uint8_t> received(slots);
   std::size_t bytes = 0;
   const std::size_t place = c.server.pool().shape().place_bytes();
@@ -353,8 +338,7 @@ void print_pictures(const Options& o, const std::string& scene) {
         received[slot] = 1;
       }
     }
-    bytes += tools::take(places.encode(ConstTextureView(bricks), some), "bricks").size() +
-             tools::take(lights.encode(ConstTextureView(light), some), "light").size();
+    bytes += bytes_of(tools::take(encoder.encode(Stream::views(c), some), "voxels"));
     const ddgi::Picture picture = draw(received);
     fmt::print("| {} | {} | {} | {} | {:.1f} |\n", scene, level,
                o.size * static_cast<float>(1U << level), bytes,

@@ -141,7 +141,8 @@ struct Viewer {
   Status draw() {
     const ClientFrame& frame = client->frame();
     if (!client->consistent() || frame.serial == drawn) return Status::ok;
-    std::vector<UploadRegion> boxes;
+    std::vector<std::uint32_t> blocks;
+    std::vector<UploadBox> boxes;
     for (const ClientVolume& volume : frame.volumes) {
       auto& mine = textures[volume.instance];
       const bool anew = mine.empty();
@@ -151,7 +152,9 @@ struct Viewer {
         const std::uint64_t since = anew ? 0 : drawn;
         Status status = client->read(volume.id, t, since, mine[t].view());
         if (status != Status::ok) return status;
-        status = upload_regions(texture.desc, mine[t].view(), texture.changed, since, boxes);
+        status = texture.changed_blocks(since, blocks);
+        if (status != Status::ok) return status;
+        status = upload_boxes(texture.desc, mine[t].view(), blocks, boxes);
         if (status != Status::ok) return status;
         uploads += boxes.size();  // vkCmdCopyBufferToImage(..., boxes) goes here.
       }

@@ -109,14 +109,14 @@ std::size_t play(ContainerReader& reader) {
     frame = packet.frame;
     const TextureEntry& texture = description.textures[packet.texture_id];
     const Grid& region = description.volumes[texture.volume].region;
-    fuzz::check((packet.region == 0) == (region.x == 0), "packets belong to a region");
+    const bool whole = packet.region == StreamId::kWholeVolume;
+    fuzz::check(whole == (region.x == 0), "packets belong to a region");
     if (!is_known(texture)) continue;
     const std::uint64_t key = region_key(packet.texture_id, packet.region);
     auto decoder = decoders.find(key);
     if (decoder == decoders.end()) {
-      auto made = Decoder::create(packet.region == 0
-                                      ? texture.desc
-                                      : region_texture(texture.desc, region, packet.region - 1));
+      auto made = Decoder::create(whole ? texture.desc
+                                        : region_texture(texture.desc, region, packet.region));
       fuzz::check(made.ok(), "descriptions that were read are valid");
       decoder = decoders.emplace(key, *std::move(made)).first;
     }

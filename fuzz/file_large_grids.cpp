@@ -82,7 +82,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const Grid& size_of_region = description.volumes[entry.volume].region;
     const bool cut = size_of_region.x != 0;
     const std::uint32_t region =
-        cut ? 1 + input.u16() % regions_of(entry.desc, size_of_region).regions() : 0;
+        cut ? input.u16() % regions_of(entry.desc, size_of_region).regions()
+            : StreamId::kWholeVolume;
     const TextureDesc desc = part_of(description, entry, region);
     (void)writer->add(frame, make_packet(input, desc, texture, frame + 1), region);
   }

@@ -216,7 +216,7 @@ void add_regions(Corpus& corpus, const TextureDesc& desc, std::string_view backe
   }
   for (std::size_t frame = 0; frame < 4; ++frame) {
     for (std::uint32_t i = 0; i < regions; ++i) {
-      if (frame < packets[i].size()) (void)writer->add(frame, packets[i][frame], i + 1);
+      if (frame < packets[i].size()) (void)writer->add(frame, packets[i][frame], i);
     }
     if (frame == 1) (void)writer->flush();
   }

@@ -169,8 +169,8 @@ TEST(HostileContainer, PacketEntries) {
   EXPECT_EQ(with([](auto& p) { p.bytes = {}; }), Status::corrupt);
   EXPECT_EQ(with([](auto& p) { p.bytes = Bytes(30); }), Status::not_gicodec);
   EXPECT_EQ(with([](auto& p) { p.bytes[3] = std::byte{3}; }), Status::corrupt);  // No such texture.
-  EXPECT_EQ(with([](auto& p) { p.region = 1; }), Status::corrupt);
-  EXPECT_EQ(with([](auto& p) { p.region = kMaxBlocks + 1; }), Status::corrupt);
+  EXPECT_EQ(with([](auto& p) { p.region = 0; }), Status::corrupt);
+  EXPECT_EQ(with([](auto& p) { p.region = kMaxBlocks; }), Status::corrupt);
   EXPECT_EQ(with([](auto& p) { p.bytes[1] |= std::byte{8}; }), Status::corrupt);  // Lossy.
   const auto in_region = [&](std::uint32_t region) {
     return with([&](auto& p) {
@@ -178,10 +178,10 @@ TEST(HostileContainer, PacketEntries) {
       p.region = region;
     });
   };
-  EXPECT_EQ(in_region(0), Status::corrupt);
-  EXPECT_EQ(in_region(1), Status::ok);
-  EXPECT_EQ(in_region(4), Status::ok);
-  EXPECT_EQ(in_region(5), Status::corrupt);
+  EXPECT_EQ(in_region(StreamId::kWholeVolume), Status::corrupt);
+  EXPECT_EQ(in_region(0), Status::ok);
+  EXPECT_EQ(in_region(3), Status::ok);
+  EXPECT_EQ(in_region(4), Status::corrupt);
   auto late = sample.packets[0], early = sample.packets[1];
   late.frame = 5;
   early.frame = 4;
@@ -287,8 +287,8 @@ TEST(HostileContainer, AWrongIndexIsNoIndex) {
   };
   EXPECT_TRUE(with([](auto&) {}));
   EXPECT_FALSE(with([](auto& i) { i[1].texture_id = 3; }));
-  EXPECT_FALSE(with([](auto& i) { i[0].region = 1; }));
-  EXPECT_FALSE(with([](auto& i) { i[2].region = 5; }));
+  EXPECT_FALSE(with([](auto& i) { i[0].region = 0; }));
+  EXPECT_FALSE(with([](auto& i) { i[2].region = 4; }));
   EXPECT_FALSE(with([](auto& i) { i[0].offset = 5; }));            // The header.
   EXPECT_FALSE(with([](auto& i) { i[1].offset = i[0].offset; }));  // Twice.
   EXPECT_FALSE(with([&](auto& i) { i.back().offset = at; }));      // The index.
@@ -388,7 +388,7 @@ TEST(HostileContainer, AnIndexOfOtherPackets) {
               const auto cut =
                   std::find_if(i.begin(), i.end(), [](const auto& e) { return e.texture_id == 2; });
               SeekEntry entry = *cut;
-              entry.region = entry.region % 4 + 1;
+              entry.region = (entry.region + 1) % 4;
               i = {entry};
             }),
             Status::corrupt);

@@ -3,6 +3,7 @@
 #include "base/bytes.h"
 #include "base/checksum.h"
 #include "bitstream/description.h"
+#include "bitstream/region_field.h"
 
 namespace gicodec::test {
 
@@ -11,7 +12,7 @@ Bytes PacketMaker::make(std::uint8_t texture_id, std::uint32_t region, bool keyf
   const TextureEntry& texture = description_->textures[texture_id];
   const Grid& size = description_->volumes[texture.volume].region;
   const TextureDesc desc =
-      region == 0 ? texture.desc : region_texture(texture.desc, size, region - 1);
+      region == StreamId::kWholeVolume ? texture.desc : region_texture(texture.desc, size, region);
   PacketChain& chain = chains_[region_key(texture_id, region)];
   chain.texture_id = texture_id;
   PacketHead head =
@@ -85,15 +86,15 @@ Sample make_sample(std::uint64_t seed, std::uint32_t frames, std::uint32_t gop,
   auto writer = *ContainerWriter::create(sink, sample.description);
   PacketMaker maker(sample.description);
   std::map<std::uint64_t, std::uint32_t> made;
-  const TextureRegion regions[] = {{0, 0}, {1, 0}, {2, 1}, {2, 2}, {2, 3}, {2, 4}};
+  const TextureRegion regions[] = {{0}, {1}, {2, 0}, {2, 1}, {2, 2}, {2, 3}};
   std::uint64_t frame = 0;
   for (std::uint32_t step = 0; step < frames; ++step) {
     frame += step == 0 ? 0 : pick(random, 1, 3);
     for (const auto& [id, region] : regions) {
       // Not every texture and region has a packet in every frame; one begins late.
       if (id == 1 && step % 3 == 1) continue;
-      if (id == 2 && step % 4 == region % 4) continue;
-      if (region == 4 && step < 2) continue;
+      if (id == 2 && step % 4 == (region + 1) % 4) continue;
+      if (region == 3 && step < 2) continue;
       const bool keyframe = made[region_key(id, region)]++ % gop == 0;
       const Bytes packet = maker.make(id, region, keyframe, random, pick(random, 0, 60));
       if (writer.add(frame, packet, region) != Status::ok) return {};
@@ -126,7 +127,7 @@ Bytes packet_entry(const ContainerPacket& packet) {
   Bytes body;
   ByteWriter writer(body);
   writer.varint(packet.frame);
-  writer.varint(packet.region);
+  writer.varint(to_region_field(packet.region));
   writer.bytes(packet.bytes);
   return entry(2, body);
 }

@@ -143,6 +143,8 @@ Status read_all(ContainerReader& reader, std::vector<ContainerPacket>& packets);
 Status read_through(std::span<const std::byte> file, bool pipe = false,
                     const DecodeLimits& limits = {});
 
+inline constexpr std::uint32_t kWhole = StreamId::kWholeVolume;
+
 /// Follows the chains of all packets that a reader gives.
 class Player {
  public:

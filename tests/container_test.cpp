@@ -139,10 +139,11 @@ TEST(Container, WriterRefusesWhatItsReaderWouldNotUnderstand) {
   description.textures[1].largest_error = 2;
   PacketMaker maker(description);
   Random random(6);
-  const auto color = maker.make(0, 0, true, random), visibility = maker.make(1, 0, true, random);
-  const auto far = maker.make(2, 1, true, random);
-  const auto lossy_color = maker.make(0, 0, true, random, 9, true);
-  const auto lossy_visibility = maker.make(1, 0, true, random, 9, true);
+  const auto color = maker.make(0, kWhole, true, random),
+             visibility = maker.make(1, kWhole, true, random);
+  const auto far = maker.make(2, 0, true, random);
+  const auto lossy_color = maker.make(0, kWhole, true, random, 9, true);
+  const auto lossy_visibility = maker.make(1, kWhole, true, random, 9, true);
 
   MemorySink sink;
   auto writer = *ContainerWriter::create(sink, description);
@@ -151,9 +152,9 @@ TEST(Container, WriterRefusesWhatItsReaderWouldNotUnderstand) {
   auto fourth_texture = color;
   fourth_texture[3] = std::byte{3};
   EXPECT_EQ(writer.add(0, fourth_texture), Status::unknown_texture);
-  EXPECT_EQ(writer.add(0, color, 1), Status::unknown_region);  // A volume of one region.
+  EXPECT_EQ(writer.add(0, color, 0), Status::unknown_region);  // A volume of one region.
   EXPECT_EQ(writer.add(0, far), Status::unknown_region);       // And one that is cut into four.
-  EXPECT_EQ(writer.add(0, far, 5), Status::unknown_region);
+  EXPECT_EQ(writer.add(0, far, 4), Status::unknown_region);
   EXPECT_EQ(writer.add(0, lossy_color), Status::description_mismatch);
   ASSERT_EQ(writer.add(7, color), Status::ok);
   EXPECT_EQ(writer.add(6, visibility), Status::wrong_frame);  // Frames must not decrease.
@@ -162,9 +163,9 @@ TEST(Container, WriterRefusesWhatItsReaderWouldNotUnderstand) {
             Status::wrong_frame);  // One packet per texture, region and frame.
   ASSERT_EQ(writer.flush(), Status::ok);
   EXPECT_EQ(writer.add(7, color), Status::wrong_frame);
-  ASSERT_EQ(writer.add(7, far, 1), Status::ok);
-  EXPECT_EQ(writer.add(7, far, 1), Status::wrong_frame);
-  ASSERT_EQ(writer.add(7, maker.make(2, 4, true, random), 4), Status::ok);
+  ASSERT_EQ(writer.add(7, far, 0), Status::ok);
+  EXPECT_EQ(writer.add(7, far, 0), Status::wrong_frame);
+  ASSERT_EQ(writer.add(7, maker.make(2, 3, true, random), 3), Status::ok);
   ASSERT_EQ(writer.add(kEnd, color), Status::ok);
   ASSERT_EQ(writer.finish(), Status::ok);
   EXPECT_EQ(writer.add(kEnd, visibility), Status::out_of_order);
@@ -197,16 +198,15 @@ TEST(Container, KeyframesOfOtherTexturesAreRefused) {
   auto writer = *ContainerWriter::create(sink, description);
   const auto before = sink.bytes.size();
   const auto mismatch = Status::description_mismatch;
-  EXPECT_EQ(writer.add(0, keyframe(far, 2), 1), mismatch);  // The whole for a part of it,
-  EXPECT_EQ(writer.add(0, keyframe(region_texture(far, size, 0), 2), 2),
+  EXPECT_EQ(writer.add(0, keyframe(far, 2), 0), mismatch);  // The whole for a part of it,
+  EXPECT_EQ(writer.add(0, keyframe(region_texture(far, size, 0), 2), 1),
             mismatch);  // another part,
   EXPECT_EQ(writer.add(0, keyframe(region_texture(far, size, 0), 0)),
             mismatch);  // another texture.
   EXPECT_EQ(writer.add(0, keyframe(description.textures[1].desc, 0)), mismatch);
   EXPECT_EQ(sink.bytes.size(), before);
-  for (std::uint32_t region = 1; region <= 4; ++region) {
-    EXPECT_EQ(writer.add(0, keyframe(region_texture(far, size, region - 1), 2), region),
-              Status::ok);
+  for (std::uint32_t region = 0; region < 4; ++region) {
+    EXPECT_EQ(writer.add(0, keyframe(region_texture(far, size, region), 2), region), Status::ok);
   }
   EXPECT_EQ(writer.add(0, keyframe(description.textures[0].desc, 0)), Status::ok);
   EXPECT_EQ(writer.finish(), Status::ok);
@@ -271,7 +271,7 @@ TEST(Container, EveryFailingWriteCanBeRepeated) {
   Random random(8);
   std::vector<Bytes> packets;
   for (std::size_t i = 0; i < kPartPackets + 5; ++i) {
-    packets.push_back(maker.make(0, 0, i % 64 == 0, random, 1));
+    packets.push_back(maker.make(0, kWhole, i % 64 == 0, random, 1));
   }
   Bytes expected;
   for (const int failing : {-1, 0, 1, 1000, 1023, 1024, 1025, 1028, 1029, 1030, 1031}) {

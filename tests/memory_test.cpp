@@ -191,7 +191,8 @@ TEST(Memory, APlayerSaysWhatItTakes) {
       const TextureDesc part = whole ? desc : region_texture(desc, region, i);
       auto encoder = *Encoder::create(part, {});
       const Bytes texels(static_cast<std::size_t>(texture_bytes(part)));
-      ASSERT_EQ(writer.add(0, *encoder.encode(ConstTextureView(texels)), whole ? 0 : i + 1),
+      ASSERT_EQ(writer.add(0, *encoder.encode(ConstTextureView(texels)),
+                           whole ? StreamId::kWholeVolume : i),
                 Status::ok);
     }
     ASSERT_EQ(writer.finish(), Status::ok);

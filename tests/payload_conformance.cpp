@@ -274,8 +274,8 @@ std::string check_container(const Row& row, Generator& random) {
           std::vector<std::byte> contents(static_cast<std::size_t>(texture_bytes(part)));
           for (std::byte& byte : contents) byte = static_cast<std::byte>(random() % 3);
           const auto packet = *encoder.encode(std::span<const std::byte>(contents));
-          if (writer->add(frame, packet, region + 1) != Status::ok) return "a packet is not added";
-          packets[{t, region + 1}].push_back(packet);
+          if (writer->add(frame, packet, region) != Status::ok) return "a packet is not added";
+          packets[{t, region}].push_back(packet);
         }
       }
     }
@@ -293,7 +293,7 @@ std::string check_container(const Row& row, Generator& random) {
     return found;
   };
   if (read_all() != packets) return "other packets";
-  const TextureRegion corner{static_cast<std::uint8_t>(textures.size() - 1), 1};
+  const TextureRegion corner{static_cast<std::uint8_t>(textures.size() - 1), 0};
   if (reader->select(std::span(&corner, 1)) != Status::ok || reader->seek(0) != Status::ok) {
     return "no selection";
   }

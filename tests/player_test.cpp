@@ -62,7 +62,7 @@ Recorded record(const VolumeDesc& volume, Delivery delivery, Generator& random) 
     EXPECT_EQ(distributor.update(), Status::ok);
     bool some = false;
     for (const OutgoingPacket& packet : distributor.packets(client)) {
-      EXPECT_EQ(writer.add(frame, *packet.packet, packet.stream.region + 1), Status::ok);
+      EXPECT_EQ(writer.add(frame, *packet.packet, packet.stream.region), Status::ok);
       some = true;
     }
     if (!some) continue;
@@ -199,7 +199,7 @@ struct ManyRegions {
         auto encoder = *Encoder::create(part, options);
         const Bytes texels(4, static_cast<std::byte>(1 + frame));
         const Packet packet = *encoder.encode(ConstTextureView(texels));
-        for (std::uint32_t region = 1; region <= packets; ++region) {
+        for (std::uint32_t region = 0; region < packets; ++region) {
           EXPECT_EQ(writer.add(frame, packet, region), Status::ok);
         }
       }
@@ -273,7 +273,7 @@ struct TwoFrames {
     Bytes bytes = head_of(description);
     for (std::size_t i = 0; i < frames.size(); ++i) {
       const Packet& packet = i == 0 ? first : second;
-      bytes = bytes + packet_entry({frames[i], 0, 0, i == 0, {packet.begin(), packet.end()}});
+      bytes = bytes + packet_entry({frames[i], kWhole, 0, i == 0, {packet.begin(), packet.end()}});
     }
     return bytes;
   }

@@ -2,6 +2,7 @@
 #include "shapes.h"
 #include "support.h"
 
+#include <gicodec/client.h>
 #include <gicodec/upload.h>
 
 #include <gtest/gtest.h>
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <numeric>
 
 namespace gicodec {
 namespace {
@@ -16,7 +18,7 @@ namespace {
 using namespace test;
 
 /// As a graphics API does it: a row of a box at a time, into the view of another texture.
-void copy_box(const UploadRegion& box, const ConstTextureView& from, const TextureDesc& desc,
+void copy_box(const UploadBox& box, const ConstTextureView& from, const TextureDesc& desc,
               Texture& to) {
   const auto target = to.view();
   const std::size_t row = box.width * desc.record.bytes;
@@ -45,46 +47,50 @@ RC_GTEST_PROP(Upload, BoxesAreWhatChanged, (std::uint64_t seed)) {
   to.fill(Fill::noise, random);
   const Bytes before = to.blocks();
   const auto blocks = random_selection(random, block_count(desc));
-  std::vector<std::uint64_t> changed(block_count(desc), 3);
-  for (const std::uint32_t block : blocks) changed[block] = 4 + random() % 3;
-  std::vector<UploadRegion> boxes;
+  std::vector<UploadBox> boxes;
   const auto view = std::as_const(from).view();
-  RC_ASSERT(upload_regions(desc, view, changed, 3, boxes) == Status::ok);
+  RC_ASSERT(upload_boxes(desc, view, blocks, boxes) == Status::ok);
   RC_ASSERT(boxes.size() <= blocks.size());
-  std::vector<std::uint32_t> list;
-  RC_ASSERT(changed_blocks(changed, 3, list) == Status::ok);
-  RC_ASSERT(std::ranges::is_permutation(list, blocks));
-  RC_ASSERT(std::ranges::is_sorted(list));
-  for (const UploadRegion& box : boxes) copy_box(box, view, desc, to);
+  for (const UploadBox& box : boxes) copy_box(box, view, desc, to);
   const Bytes after = to.blocks();
   const std::size_t size = guarded_bytes(desc);
-  for (std::uint32_t block = 0; block < changed.size(); ++block) {
+  for (std::uint32_t block = 0; block < block_count(desc); ++block) {
     const auto of = [&](const Bytes& all) { return std::span(all).subspan(block * size, size); };
-    const Bytes wanted = changed[block] > 3 ? from.block(block) : Bytes();
-    RC_ASSERT(
-        same(of(after), changed[block] > 3 ? std::span<const std::byte>(wanted) : of(before)));
+    const bool copied = std::ranges::find(blocks, block) != blocks.end();
+    const Bytes wanted = copied ? from.block(block) : Bytes();
+    RC_ASSERT(same(of(after), copied ? std::span<const std::byte>(wanted) : of(before)));
   }
   RC_ASSERT(to.padding_untouched());
+}
+
+TEST(Upload, BlocksAreThoseOfLaterFrames) {
+  ClientTexture texture;
+  texture.changed = {3, 4, 0, 9};
+  std::vector<std::uint32_t> blocks{7};
+  ASSERT_EQ(texture.changed_blocks(3, blocks), Status::ok);
+  EXPECT_EQ(blocks, (std::vector<std::uint32_t>{1, 3}));
+  ASSERT_EQ(texture.changed_blocks(0, blocks), Status::ok);
+  EXPECT_EQ(blocks, (std::vector<std::uint32_t>{0, 1, 3}));
 }
 
 TEST(Upload, RowsAreOneBox) {
   const TextureDesc desc = ddgi_irradiance({4, 2, 3});
   const Bytes texels(texture_bytes(desc));
-  std::vector<std::uint64_t> changed(24, 1);
-  std::vector<UploadRegion> boxes;
-  ASSERT_EQ(upload_regions(desc, ConstTextureView(texels), changed, 0, boxes), Status::ok);
+  std::vector<std::uint32_t> blocks(24);
+  std::iota(blocks.begin(), blocks.end(), 0U);
+  std::vector<UploadBox> boxes;
+  ASSERT_EQ(upload_boxes(desc, ConstTextureView(texels), blocks, boxes), Status::ok);
   ASSERT_EQ(boxes.size(), 3U);  // Rows of tiles of the atlas.
-  EXPECT_EQ(boxes[1], (UploadRegion{80 * 4 * 10, 80 * 4, 80 * 4 * 30, 0, 10, 0, 80, 10, 1}));
-  changed[1] = 0;
-  ASSERT_EQ(upload_regions(desc, ConstTextureView(texels), changed, 0, boxes), Status::ok);
+  EXPECT_EQ(boxes[1], (UploadBox{80 * 4 * 10, 80 * 4, 80 * 4 * 30, 0, 10, 0, 80, 10, 1}));
+  blocks.erase(blocks.begin() + 1);
+  std::ranges::reverse(blocks);
+  ASSERT_EQ(upload_boxes(desc, ConstTextureView(texels), blocks, boxes), Status::ok);
   EXPECT_EQ(boxes.size(), 4U);
-  changed.pop_back();
-  EXPECT_EQ(upload_regions(desc, ConstTextureView(texels), changed, 0, boxes),
-            Status::mask_mismatch);
-  changed.push_back(0);
   const auto less = std::span(texels).first(texels.size() - 1);
-  EXPECT_EQ(upload_regions(desc, ConstTextureView(less), changed, 0, boxes),
-            Status::view_too_small);
+  EXPECT_EQ(upload_boxes(desc, ConstTextureView(less), blocks, boxes), Status::view_too_small);
+  blocks[3] = 24;
+  EXPECT_EQ(upload_boxes(desc, ConstTextureView(texels), blocks, boxes),
+            Status::block_out_of_range);
 }
 
 }  // namespace

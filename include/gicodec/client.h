@@ -32,6 +32,9 @@ struct ClientTexture {
   float largest_error = 0;
 
   [[nodiscard]] ConstTextureView view() const noexcept { return {texels}; }
+  /// Replaces `out` by the blocks that were replaced after the frame of that serial, ascending.
+  /// Keeps its capacity. out_of_memory.
+  Status changed_blocks(std::uint64_t since, std::vector<std::uint32_t>& out) const;
 };
 
 struct ClientVolume {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <gicodec/api.h>
+#include <gicodec/delivery.h>
 #include <gicodec/io.h>
 #include <gicodec/kind.h>
 #include <gicodec/packet.h>
@@ -73,12 +74,11 @@ struct ContainerDescription {
 Status add_volume(ContainerDescription& description, std::string name, const VolumeDesc& volume,
                   std::span<const Kind* const> kinds = {});
 
-/// The part of a texture that a packet belongs to. Region 0: a texture that is not cut into
-/// regions; else 1 + the region's number in RegionGrid. For a packet of a Host it is
-/// OutgoingPacket::stream.region + 1 (StreamId::kWholeVolume + 1 is 0).
+/// The part of a texture that a packet belongs to: a region by its number in RegionGrid, or
+/// StreamId::kWholeVolume of a texture that is not cut.
 struct TextureRegion {
   std::uint8_t texture_id = 0;
-  std::uint32_t region = 0;
+  std::uint32_t region = StreamId::kWholeVolume;
   friend constexpr bool operator==(const TextureRegion&, const TextureRegion&) = default;
 };
 /// Writes a container front to back, without seeking. A call that fails, for lack of memory or by
@@ -94,9 +94,10 @@ class ContainerWriter {
   /// Adds a packet to a frame. Frames must not decrease; a region of a texture has at most one
   /// packet per frame. The packet's own texture_id names its texture.
   /// Errors: wrong_frame; unknown_texture; unknown_region; description_mismatch for a keyframe that
-  /// was made for another texture than region_texture() (region 0: the whole texture), or for a
-  /// lossy packet of a texture whose largest_error is 0.
-  Status add(std::uint64_t frame, std::span<const std::byte> packet, std::uint32_t region = 0);
+  /// was made for another texture than region_texture() or the whole one, or for a lossy packet of
+  /// a texture whose largest_error is 0.
+  Status add(std::uint64_t frame, std::span<const std::byte> packet,
+             std::uint32_t region = StreamId::kWholeVolume);
   /// Writes the index of all packets so far, for programs that read the file while it grows. add()
   /// does so by itself every 1024 packets.
   Status flush();
@@ -118,7 +119,7 @@ class ContainerWriter {
 /// A packet as read from a container.
 struct ContainerPacket {
   std::uint64_t frame = 0;
-  std::uint32_t region = 0;  ///< see TextureRegion
+  std::uint32_t region = StreamId::kWholeVolume;  ///< see TextureRegion
   std::uint8_t texture_id = 0;
   bool keyframe = false;
   std::vector<std::byte> bytes;

@@ -48,8 +48,7 @@ using ClientId = std::uint32_t;  ///< never given twice
 struct StreamId {
   std::uint16_t volume = 0;
   std::uint8_t texture = 0;
-  /// Of RegionGrid, from 0 on, or kWholeVolume. Containers count from 1 and have 0 for the whole:
-  /// TextureRegion::region is `region + 1`, in either case.
+  /// As RegionGrid counts them, or kWholeVolume.
   std::uint32_t region = kWholeVolume;
 
   static constexpr std::uint32_t kWholeVolume = UINT32_MAX;

@@ -3,6 +3,7 @@
 
 #include "base/bytes.h"
 #include "base/checksum.h"
+#include "bitstream/region_field.h"
 
 #include <algorithm>
 
@@ -34,9 +35,7 @@ std::vector<PacketRule> packet_rules(const ContainerDescription& description) {
     rule.lossless = texture.largest_error == 0;
     const Grid& region = description.volumes[texture.volume].region;
     if (region.x != 0) {
-      rule.first_region = 1;
-      rule.last_region =
-          is_known(texture) ? regions_of(texture.desc, region).regions() : kMaxBlocks;
+      rule.regions = is_known(texture) ? regions_of(texture.desc, region).regions() : kMaxBlocks;
     }
     rules.push_back(rule);
   }
@@ -53,7 +52,7 @@ void write_index_part(std::span<const SeekEntry> packets, std::uint64_t before,
     writer.varint(packet.frame - last.frame);
     writer.varint(packet.offset - last.offset);
     writer.fixed(packet.texture_id);
-    writer.varint(packet.region);
+    writer.varint(to_region_field(packet.region));
     writer.fixed(packet.keyframe ? kIndexKeyframe : std::uint8_t{0});
     last = packet;
   }
@@ -93,7 +92,7 @@ Status read_index_part(std::span<const std::byte> body, std::span<const PacketRu
     const std::uint64_t distance = reader.varint(offset - packet.offset);
     packet.offset += distance;
     packet.texture_id = reader.fixed<std::uint8_t>();
-    packet.region = static_cast<std::uint32_t>(reader.varint(kMaxBlocks));
+    packet.region = from_region_field(reader.varint(kMaxRegionField));
     const auto flags = reader.fixed<std::uint8_t>();
     packet.keyframe = flags == kIndexKeyframe;
     if (distance == 0 || packet.offset < begin || packet.offset >= offset ||

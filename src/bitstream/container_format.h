@@ -45,11 +45,11 @@ Status read_description(std::span<const std::byte> body, const DecodeLimits& lim
 
 /// The packets that a texture may have.
 struct PacketRule {
-  std::uint32_t first_region = 0, last_region = 0;
+  std::uint32_t regions = 0;  ///< 0: the texture is not cut
   bool lossless = true;
 
   [[nodiscard]] constexpr bool has(std::uint32_t region) const noexcept {
-    return region >= first_region && region <= last_region;
+    return regions == 0 ? region == StreamId::kWholeVolume : region < regions;
   }
 };
 /// One rule per texture. Allows any region for a volume of an unknown kind with regions.
@@ -67,7 +67,7 @@ struct PacketRule {
 struct SeekEntry {
   std::uint64_t frame = 0;
   std::uint64_t offset = 0;  ///< of the packet's entry, from the start of the file
-  std::uint32_t region = 0;
+  std::uint32_t region = StreamId::kWholeVolume;
   std::uint8_t texture_id = 0;
   bool keyframe = false;
 

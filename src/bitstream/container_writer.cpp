@@ -6,6 +6,7 @@
 #include "bitstream/container_format.h"
 #include "bitstream/description.h"
 #include "bitstream/packet.h"
+#include "bitstream/region_field.h"
 
 #include <set>
 #include <utility>
@@ -86,7 +87,8 @@ Status ContainerWriter::State::check_made_for(const PacketParts& packet,
   const TextureDesc& whole = textures[packet.info.texture_id];
   if (!is_keyframe(packet.info.type) || whole.record.bytes == 0) return Status::ok;
   const Grid& size = region_sizes[packet.info.texture_id];
-  const auto hash = description_hash(region == 0 ? whole : region_texture(whole, size, region - 1));
+  const auto hash = description_hash(
+      region == StreamId::kWholeVolume ? whole : region_texture(whole, size, region));
   return packet.base == hash ? Status::ok : Status::description_mismatch;
 }
 
@@ -111,7 +113,7 @@ Status ContainerWriter::State::add(std::uint64_t frame, std::span<const std::byt
   std::vector<std::byte> head, out;
   ByteWriter fields(head);
   fields.varint(frame);
-  fields.varint(region);
+  fields.varint(to_region_field(region));
   append_entry(EntryType::packet, head, packet, out);
   std::uint64_t part = 0;
   if (unlisted.size() + 1 == kPartPackets) {

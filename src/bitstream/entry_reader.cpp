@@ -4,6 +4,7 @@
 
 #include "base/bytes.h"
 #include "base/checksum.h"
+#include "bitstream/region_field.h"
 
 #include <algorithm>
 
@@ -162,7 +163,7 @@ Status EntryReader::take_packet(FileEntry& entry) const {
   SeekEntry& packet = entry.packet;
   packet.offset = entry.offset;
   packet.frame = fields.varint();
-  packet.region = static_cast<std::uint32_t>(fields.varint(kMaxBlocks));
+  packet.region = from_region_field(fields.varint(kMaxRegionField));
   if (!fields.ok()) return Status::corrupt;
   entry.bytes = fields.rest();
   const auto info = peek(entry.bytes);

@@ -3,6 +3,7 @@
 
 #include "base/guard.h"
 #include "bitstream/message_archive.h"
+#include "bitstream/region_field.h"
 #include "bitstream/update_message.h"
 
 #include <concepts>
@@ -13,8 +14,6 @@ namespace {
 
 constexpr std::uint32_t kMagic = 0x73636967;  // "gics"
 constexpr std::uint8_t kLastReason = static_cast<std::uint8_t>(Reason::unicast_full);
-/// Most of a stream's region field: 0 is the whole volume, else the region + 1.
-constexpr std::uint64_t kMaxRegionField = kMaxBlocks;
 
 /// A message to read into, or a const one to write.
 template <typename T, typename M>
@@ -65,15 +64,14 @@ void magic(Reader& reader) {
 void stream_id(Writer& writer, const StreamId& id) {
   writer.number(id.volume, kMaxVolumes - 1);
   writer.fixed(id.texture);
-  writer.number(id.region == StreamId::kWholeVolume ? 0 : std::uint64_t{id.region} + 1,
-                kMaxRegionField);
+  writer.number(to_region_field(id.region), kMaxRegionField);
 }
 void stream_id(Reader& reader, StreamId& id) {
   reader.number(id.volume, kMaxVolumes - 1);
   reader.fixed(id.texture);
   std::uint64_t region = 0;
   reader.number(region, kMaxRegionField);
-  id.region = region == 0 ? StreamId::kWholeVolume : static_cast<std::uint32_t>(region - 1);
+  id.region = from_region_field(region);
 }
 
 void mask(Writer& writer, const BlockMask& mask) {

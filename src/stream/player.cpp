@@ -89,14 +89,14 @@ Status ContainerPlayer::select(std::span<const std::uint8_t> textures) {
       const TextureEntry& entry = state_->entries()[texture];
       const Grid& region = description().volumes[entry.volume].region;
       if (region == Grid{}) {
-        wanted.push_back({texture, 0});
+        wanted.push_back({texture});
         continue;
       }
       // The regions of an unknown kind are unknown.
       const std::uint32_t regions =
           is_known(entry) ? regions_of(entry.desc, region).regions() : UINT32_MAX;
       few = wanted.size() + std::uint64_t{regions} <= kMostSelected;
-      for (std::uint32_t r = 1; few && r <= regions; ++r) wanted.push_back({texture, r});
+      for (std::uint32_t r = 0; few && r < regions; ++r) wanted.push_back({texture, r});
     }
     if (!few) wanted.clear();
     const Status status = state_->reader.select(wanted);
@@ -114,7 +114,7 @@ Status ContainerPlayer::set_layout(std::uint8_t texture, const Layout& layout) {
 Status ContainerPlayer::State::apply(const ContainerPacket& packet) {
   where = {packet.frame, TextureRegion{packet.texture_id, packet.region}};
   if (!is_played(packet.texture_id)) return verify_checksum(packet.bytes);
-  const Status status = decoders.decode(packet.texture_id, packet.region - 1, packet.bytes);
+  const Status status = decoders.decode(packet.texture_id, packet.region, packet.bytes);
   where.memory = decoders.needed();
   return status;
 }

@@ -120,7 +120,7 @@ TEST(FailingContainer, AReaderGoesOnAfterEveryAllocation) {
   auto reader = *ContainerReader::open(source);
   const std::uint64_t frame = sample.frames.rbegin()->first;
   ASSERT_EQ(until_enough([&] { return reader.seek(frame); }, [] {}), Status::ok);
-  const TextureRegion wanted[] = {{0, 0}, {1, 0}, {2, 1}, {2, 2}, {2, 3}, {2, 4}};
+  const TextureRegion wanted[] = {{0}, {1}, {2, 0}, {2, 1}, {2, 2}, {2, 3}};
   ASSERT_EQ(until_enough([&] { return reader.select(wanted); }, [] {}), Status::ok);
   ASSERT_EQ(reader.seek(0), Status::ok);
   for (const ContainerPacket& expected : sample.packets) {
@@ -148,7 +148,7 @@ TEST(FailingContainer, APlayerGoesOnAfterEveryAllocation) {
     for (std::uint32_t part = 0; part < 8; ++part) {
       const Bytes texels(static_cast<std::size_t>(texture_bytes(encoders[part].desc())),
                          static_cast<std::byte>(8 * frame + part));
-      ASSERT_EQ(writer.add(frame, *encoders[part].encode(ConstTextureView(texels)), 1 + part % 4),
+      ASSERT_EQ(writer.add(frame, *encoders[part].encode(ConstTextureView(texels)), part % 4),
                 Status::ok);
     }
   }

@@ -222,8 +222,12 @@ inline TextureDesc volumes_texture(const ContainerDescription& description, std:
                                    std::uint32_t region) {
   const TextureEntry& texture = description.textures[texture_id];
   if (!is_known(texture)) return index_desc();
-  if (region == 0) return texture.desc;
-  return region_texture(texture.desc, description.volumes[texture.volume].region, region - 1);
+  if (region == StreamId::kWholeVolume) return texture.desc;
+  return region_texture(texture.desc, description.volumes[texture.volume].region, region);
+}
+/// What paint() is asked for: with regions counted from 1 on.
+inline std::uint32_t volumes_step(std::uint64_t frame, std::uint32_t region) {
+  return static_cast<std::uint32_t>(frame) + region + 1;
 }
 inline std::uint32_t volumes_regions(const ContainerDescription& description,
                                      std::uint8_t texture_id) {

@@ -4,6 +4,7 @@
 
 #include "bitstream/description.h"
 #include "bitstream/packet.h"
+#include "bitstream/region_field.h"
 #include "container_support.h"
 #include "native/frame/payload.h"
 
@@ -79,7 +80,8 @@ void volumes() {
   for (std::uint32_t frame = 0; frame < kVolumesFrames; ++frame) {
     for (std::uint8_t id = 0; id < description.textures.size(); ++id) {
       const std::uint32_t regions = volumes_regions(description, id);
-      for (std::uint32_t region = regions == 0 ? 0 : 1; region <= regions; ++region) {
+      for (std::uint32_t i = 0; i < std::max(regions, 1U); ++i) {
+        const std::uint32_t region = regions == 0 ? StreamId::kWholeVolume : i;
         const TextureDesc desc = volumes_texture(description, id, region);
         EncoderOptions options;
         options.backend = "lz4";
@@ -89,7 +91,7 @@ void volumes() {
             encoders.try_emplace(region_key(id, region), *Encoder::create(desc, options))
                 .first->second;
         test::Texture texture(desc);
-        paint(texture, frame + region);
+        paint(texture, volumes_step(frame, region));
         must(writer.add(frame, *encoder.encode(std::as_const(texture).view()), region));
       }
     }
@@ -340,7 +342,7 @@ void bad_entries() {
     return *encoder.encode(texture.view(), Selection::all());
   };
   const auto entry = [](std::uint64_t frame, std::uint32_t region, const Packet& bytes) {
-    return test::packet_entry({frame, region, 0, true, bytes});
+    return test::packet_entry({frame, from_region_field(region), 0, true, bytes});
   };
   const Packet whole = packet(desc, 0);
   const Said cut{.region = {2, 1, 1}};
@@ -364,8 +366,10 @@ void bad_indices() {
   const test::Texture texture(desc);
   const Bytes start = file_of({});
   const Bytes head(start.begin(), start.end() - kEndEntry);
-  const Bytes first = test::packet_entry({0, 0, 0, true, *encoder.encode(texture.view())});
-  const Bytes second = test::packet_entry({1, 0, 0, true, *encoder.encode(texture.view())});
+  const Bytes first =
+      test::packet_entry({0, StreamId::kWholeVolume, 0, true, *encoder.encode(texture.view())});
+  const Bytes second =
+      test::packet_entry({1, StreamId::kWholeVolume, 0, true, *encoder.encode(texture.view())});
   const std::uint64_t at = head.size(), then = at + first.size(), part = then + second.size();
   struct Line {
     std::uint64_t frame, distance;

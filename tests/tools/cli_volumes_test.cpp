@@ -87,16 +87,16 @@ class CliVolumes : public testing::Test {
         const std::uint32_t regions = size.x == 0 ? 1 : regions_of(desc, size).regions();
         const auto texels = contents(desc, frame);
         for (std::uint32_t i = 0; i < regions; ++i) {
-          const std::uint32_t region = size.x == 0 ? 0 : i + 1;
-          const TextureDesc part = region == 0 ? desc : region_texture(desc, size, i);
+          const bool whole = size.x == 0;
+          const TextureDesc part = whole ? desc : region_texture(desc, size, i);
           EncoderOptions options;
           options.backend = "zstd";
           options.texture_id = static_cast<std::uint8_t>(id);
-          auto& encoder = encoders.try_emplace(region * 256 + id, *Encoder::create(part, options))
-                              .first->second;
-          const auto own = region == 0 ? texels : cut(desc, size, i, texels);
+          auto& encoder =
+              encoders.try_emplace(i * 256 + id, *Encoder::create(part, options)).first->second;
+          const auto own = whole ? texels : cut(desc, size, i, texels);
           const auto packet = encoder.encode(ConstTextureView(own));
-          EXPECT_EQ(writer->add(frame, *packet, region), Status::ok);
+          EXPECT_EQ(writer->add(frame, *packet, whole ? StreamId::kWholeVolume : i), Status::ok);
         }
       }
     }
@@ -273,11 +273,11 @@ TEST_F(CliVolumes, RegionsComeBackAsOneTexture) {
   add_probes("near", "vis", {3, 1, 2});
   const auto bytes = write("x.gic");
   expect_parts(program_.succeed({"info", "x.gic", "--packets"}).out,
-               {"grid 4x2x3, cut into regions of 3x1x2", "region    8"});
+               {"grid 4x2x3, cut into regions of 3x1x2", "region    7"});
   const auto json = nlohmann::json::parse(
       program_.succeed({"info", "x.gic", "--packets", "--format", "json"}).out);
   EXPECT_EQ(json["volumes"][0]["region"], (std::vector<int>{3, 1, 2}));
-  EXPECT_EQ(json["textures"][0]["packets"][7]["region"], 8);
+  EXPECT_EQ(json["textures"][0]["packets"][7]["region"], 7);
   EXPECT_EQ(json["textures"][0]["keyframes"]["blocks"], 24);
   EXPECT_EQ(json["textures"][0]["keyframes"]["full_texture_bytes"], texture_bytes(kVisDesc));
   program_.succeed({"decode", "x.gic", "-o", "out"});
@@ -343,7 +343,7 @@ TEST_F(CliVolumes, KeyframesOfRegionsTakeBlocksBack) {
     auto encoder = Encoder::create(part, {.backend = "zstd"});
     const std::vector<std::uint32_t> brought{2 * frame + 1, 2 * frame + 2};
     const auto packet = encoder->encode(ConstTextureView(texels), Selection(brought));
-    ASSERT_EQ(writer->add(frame, *packet, 1), Status::ok);
+    ASSERT_EQ(writer->add(frame, *packet, 0), Status::ok);
     ASSERT_EQ(decoder->decode(*packet), Status::ok);
     ASSERT_EQ(decoder->read(TextureView{wanted.emplace_back(texels.size())}), Status::ok);
   }

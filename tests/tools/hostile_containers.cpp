@@ -65,7 +65,7 @@ std::vector<std::byte> cut(const TextureDesc& desc, std::size_t regions) {
   const Packet packet = take(encoder.encode(ConstTextureView(texels)), "packet");
   test::MemorySink file;
   auto writer = take(ContainerWriter::create(file, description), "writer");
-  for (std::uint32_t region = 1; region <= regions; ++region) {
+  for (std::uint32_t region = 0; region < regions; ++region) {
     check(writer.add(0, packet, region), "packet");
   }
   check(writer.finish(), "index");

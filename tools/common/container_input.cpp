@@ -243,8 +243,9 @@ std::string ContainerInput::frames_there() {
 }
 
 std::string ContainerInput::where(std::uint64_t frame, TextureRegion part) const {
-  return fmt::format("{}: frame {}, texture {}{}", path_, frame, textures_[part.texture_id].name,
-                     part.region == 0 ? "" : fmt::format(", region {}", part.region));
+  return fmt::format(
+      "{}: frame {}, texture {}{}", path_, frame, textures_[part.texture_id].name,
+      part.region == StreamId::kWholeVolume ? "" : fmt::format(", region {}", part.region));
 }
 
 std::string require_complete(const ContainerInput& input, bool allowed) {

@@ -141,8 +141,8 @@ float error_of(std::string_view text) {
 
 TextureDesc part_of(const ContainerDescription& description, const TextureEntry& texture,
                     std::uint32_t region) {
-  if (region == 0) return texture.desc;
-  return region_texture(texture.desc, description.volumes[texture.volume].region, region - 1);
+  if (region == StreamId::kWholeVolume) return texture.desc;
+  return region_texture(texture.desc, description.volumes[texture.volume].region, region);
 }
 
 }  // namespace gicodec::tools

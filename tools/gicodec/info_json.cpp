@@ -131,18 +131,19 @@ Json texture_json(const ContainerReport& report, std::size_t place) {
     json["native"] = native;
   if (!entry.metadata.empty()) json["metadata"] = metadata_json(entry.metadata);
   for (const PacketLine& packet : own.packets) {
-    json["packets"].push_back({{"frame", packet.frame},
-                               {"region", packet.region},
-                               {"keyframe", is_keyframe(packet.info.type)},
-                               {"lossy", packet.info.lossy},
-                               {"backend", backend_text(packet.info.backend)},
-                               {"sequence", packet.info.sequence},
-                               {"reference", packet.info.reference},
-                               {"blocks", or_null(packet.blocks)},
-                               {"bytes", packet.bytes},
-                               {"index_bytes", packet.info.index_size},
-                               {"guard_band_bytes", packet.info.guard_band_size},
-                               {"payload_bytes", packet.info.payload_size}});
+    json["packets"].push_back(
+        {{"frame", packet.frame},
+         {"region", packet.region == StreamId::kWholeVolume ? Json(nullptr) : Json(packet.region)},
+         {"keyframe", is_keyframe(packet.info.type)},
+         {"lossy", packet.info.lossy},
+         {"backend", backend_text(packet.info.backend)},
+         {"sequence", packet.info.sequence},
+         {"reference", packet.info.reference},
+         {"blocks", or_null(packet.blocks)},
+         {"bytes", packet.bytes},
+         {"index_bytes", packet.info.index_size},
+         {"guard_band_bytes", packet.info.guard_band_size},
+         {"payload_bytes", packet.info.payload_size}});
   }
   return json;
 }

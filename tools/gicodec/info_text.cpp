@@ -99,7 +99,8 @@ void print_packet(const PacketLine& packet) {
   print(
       "  frame {:>6} {}{:<8} {:>9} bytes: {} header, {} indices, {} guard bands, {} payload; "
       "{} blocks, {}{}\n",
-      packet.frame, packet.region == 0 ? "" : fmt::format("region {:>4} ", packet.region),
+      packet.frame,
+      packet.region == StreamId::kWholeVolume ? "" : fmt::format("region {:>4} ", packet.region),
       is_keyframe(info.type) ? "keyframe" : "update", packet.bytes,
       packet.bytes - info.index_size - info.guard_band_size - info.payload_size, info.index_size,
       info.guard_band_size, info.payload_size,

@@ -34,7 +34,11 @@ SourceContainer::SourceContainer(const std::string& path, const Source& source,
                                  const FrameTimes& times, const std::string& backend)
     : output_(path, describe(source, times, path)) {
   for (const SourceVolume& volume : source.volumes) {
-    encoders_.emplace_back(volume.desc, backend, path, static_cast<std::uint8_t>(sums_.size()));
+    VolumeEncoderOptions options;
+    options.backend = backend;
+    options.gop = 0;  // keyframes would need blocks that did not change
+    options.first_texture = static_cast<std::uint8_t>(sums_.size());
+    encoders_.push_back(tools::take(VolumeEncoder::create(volume.desc, options), path));
     for (const NamedTexture& texture : volume.textures()) sums_.push_back({texture.name, 0});
   }
 }
@@ -43,8 +47,9 @@ void SourceContainer::add(std::uint64_t frame, const SourceFrame& contents) {
   std::size_t texture = 0;
   for (std::size_t v = 0; v < encoders_.size(); ++v) {
     const auto& textures = contents.volumes[v].textures;
-    const std::vector<Texels> texels(textures.begin(), textures.end());
-    for (const Packet& packet : encoders_[v].encode(texels)) {
+    const std::vector<ConstTextureView> views(textures.begin(), textures.end());
+    const auto packets = tools::take(encoders_[v].encode(views), sums_[texture].texture);
+    for (const Packet& packet : packets) {
       sums_[texture++].bytes += packet.size();
       output_.add(frame, packet);
     }

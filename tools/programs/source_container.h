@@ -6,7 +6,8 @@
 #include "common/container_output.h"
 #include "common/frame_times.h"
 #include "dump/file.h"
-#include "volume_encoders.h"
+
+#include <gicodec/volume_encoder.h>
 
 #include <cstdint>
 #include <string>
@@ -35,7 +36,7 @@ class SourceContainer {
   [[nodiscard]] const std::vector<Sum>& sums() const { return sums_; }
 
  private:
-  std::vector<VolumeEncoders> encoders_;  ///< by volume
+  std::vector<VolumeEncoder> encoders_;  ///< by volume
   std::vector<Sum> sums_;
   tools::ContainerOutput output_;
 };

@@ -5,8 +5,8 @@
 #include "session/client/client_frame.h"
 #include "session/client/client_limits.h"
 #include "session/client/client_state.h"
-#include "texture/copy_block.h"
 #include "texture/presence.h"
+#include "texture/view.h"
 
 #include <algorithm>
 #include <map>
@@ -253,11 +253,17 @@ Status Client::State::apply(const UpdateMessage::Part& part) {
   const auto info = peek(part.packet);
   if (info.ok() && info->lossy && texture.largest_error == 0) return Status::corrupt;
   const bool whole = blocks.empty();
-  const bool texels = has_texels(), gathered = texels && !whole;
-  if (gathered) scratch.resize(static_cast<std::size_t>(texture_bytes(decoder.desc())));
-  const TextureView target{gathered ? std::span(scratch) : std::span(texture.texels)};
-  const Status status = texels ? decoder.decode(part.packet, target) : decoder.decode(part.packet);
+  const TextureView target{texture.texels};
+  places.reserve(whole ? 0 : blocks.size());
+  const Status status =
+      has_texels() && whole ? decoder.decode(part.packet, target) : decoder.decode(part.packet);
   if (status != Status::ok) return status;
+  places.clear();
+  if (!whole) {
+    for (const std::uint32_t block : decoder.changed()) places.push_back(blocks[block]);
+    if (has_texels())
+      static_cast<void>(decoder.read(decoder.changed(), texture.desc, target, places));
+  }
 
   const auto [group, first] = group_of(volume.desc, part.stream.texture);
   const bool is_presence = part.stream.texture - first == group->presence;
@@ -266,10 +272,6 @@ Status Client::State::apply(const UpdateMessage::Part& part) {
   (*found)->stateful = !by_mirror || (!keyframe && (*found)->stateful);
   for (const std::uint32_t block : decoder.changed()) {
     const std::uint32_t place = whole ? block : blocks[block];
-    if (gathered) {
-      copy_block(decoder.desc(), *check_view(decoder.desc(), ConstTextureView(scratch)), block,
-                 texture.desc, *check_view(texture.desc, TextureView{texture.texels}), place);
-    }
     texture.changed[place] = decoder.received()[block] != 0 ? frame.serial + 1 : 0;
     if (is_presence) told_presence.emplace_back(part.stream, block);
   }
@@ -359,26 +361,23 @@ Status Client::read(std::uint16_t volume, std::uint8_t texture, std::uint64_t si
   const auto target = check_view(held.desc, view);
   if (!target) return target.status();
   return guarded([&]() -> Status {
-    auto& replaced = state_->replaced;
+    auto& [replaced, places] = state_->read_lists;
     const auto first = state_->chains.lower_bound({volume, texture, 0});
     for (auto it = first; it != state_->chains.end(); ++it) {
       const auto& [stream, chain] = *it;
       if (stream.volume != volume || stream.texture != texture) break;
-      const TextureDesc& desc = chain.decoder.desc();
+      const bool whole = chain.blocks.empty();
       replaced.clear();
-      for (std::uint32_t block = 0; block < block_count(desc); ++block) {
-        const std::uint32_t place = chain.blocks.empty() ? block : chain.blocks[block];
-        if (held.changed[place] > since) replaced.push_back(block);
+      places.clear();
+      for (std::uint32_t block = 0; block < block_count(chain.decoder.desc()); ++block) {
+        const std::uint32_t place = whole ? block : chain.blocks[block];
+        if (held.changed[place] <= since) continue;
+        replaced.push_back(block);
+        if (!whole) places.push_back(place);
       }
-      if (chain.blocks.empty()) return chain.decoder.read(view, replaced);
-      std::vector<std::byte>& texels = state_->scratch;
-      texels.resize(static_cast<std::size_t>(texture_bytes(desc)));
-      const Status status = chain.decoder.read(TextureView{texels}, replaced);
+      const Status status =
+          chain.decoder.read(replaced, held.desc, view, whole ? replaced : places);
       if (status != Status::ok) return status;
-      const auto from = check_view(desc, ConstTextureView(texels));
-      for (const std::uint32_t block : replaced) {
-        copy_block(desc, *from, block, held.desc, *target, chain.blocks[block]);
-      }
     }
     return Status::ok;
   });

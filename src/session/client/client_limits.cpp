@@ -34,7 +34,7 @@ void add(Memory& memory, const TextureDesc& desc, const Grid& region, Delivery d
   if (delivery == Delivery::shared) {
     streams = regions_of(desc, region).regions();
     of_stream = region_texture(desc, region, 0);  // None is larger.
-    held += blocks * sizeof(std::uint32_t) + texture_bytes(of_stream);
+    held += (blocks + 3 * block_count(of_stream)) * sizeof(std::uint32_t);
   }
   // One texture's are far from the largest number; those of all may not be.
   memory.held = saturated(memory.held, held + held_memory(desc) + streams * kTexture);

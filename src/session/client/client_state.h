@@ -59,8 +59,10 @@ struct Client::State {
   unsigned frames = 1;  ///< that are going to be copies of it, itself included
   std::map<StreamId, Chain> chains;
   std::shared_ptr<DecoderScratch> decoding;
-  std::vector<std::byte> scratch;       ///< texture of a region
-  std::vector<std::uint32_t> replaced;  ///< of read()
+  std::vector<std::uint32_t> places;  ///< where the blocks that a packet changed are
+  struct {
+    std::vector<std::uint32_t> replaced, places;  ///< blocks of a chain, and where they are
+  } read_lists;                                   ///< of read()
   /// Blocks of streams that say which records exist, of the update that is being applied.
   std::vector<std::pair<StreamId, std::uint32_t>> told_presence;
   std::vector<Message> replies;

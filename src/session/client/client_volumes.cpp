@@ -53,7 +53,6 @@ Status Client::State::begin(const Welcome& said) {
   auto scratch_of_session = DecoderScratch::create();
   if (!scratch_of_session) return scratch_of_session.status();
   decoding = *std::move(scratch_of_session);
-  std::vector<std::byte>().swap(scratch);
   for (ClientVolume& volume : *volumes) make_room(volume, has_texels());
   for (ClientVolume& volume : *volumes) volume.instance = ++instances;
   SceneId scene = said.scene;

@@ -153,7 +153,7 @@ void ClientRecorder::State::forget_others(const Client::State& client,
 }
 
 Status ClientRecorder::State::write(StreamId id, std::span<const std::byte> bytes) {
-  return writer.add(frame, bytes, id.region + 1);  // kWholeVolume + 1 is 0.
+  return writer.add(frame, bytes, id.region);
 }
 
 /// Adds a packet if it follows from what is there; else its stream is not recorded any more.
