@@ -87,7 +87,7 @@ TEST_F(VolumeCodec, SetsHaveSelectionsOfTheirOwn) {
   EXPECT_EQ(encoder.encode(views(all_[2]), std::span(selections).first(2)).status(),
             Status::invalid_argument);
   const BlockMask active{1, 0, 0, 0, 0, 0, 0, 0, 0, 0};
-  EXPECT_EQ(encoder.set_active(3, active), Status::unknown_set);
+  EXPECT_EQ(encoder.set_active(3, active), Status::unknown_group);
   EXPECT_EQ(encoder.set_active(1, active), Status::mask_mismatch);
   ASSERT_EQ(encoder.set_active(0, active), Status::ok);
   Contents inverted = all_[2];
