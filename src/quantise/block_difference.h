@@ -1,4 +1,4 @@
-// How far two blocks are apart.
+// The distance of two blocks.
 #pragma once
 
 #include <gicodec/texture.h>

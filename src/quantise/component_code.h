@@ -1,4 +1,4 @@
-// Components of records as codes: integers whose distance says how far values are apart.
+// Components of records as codes: integers whose distance is that of the values.
 #pragma once
 
 #include <gicodec/record.h>
