@@ -307,7 +307,7 @@ void print_table_2(const Case& c, const std::vector<std::string>& settings, bool
     time = c.start + f / c.fps;
     const kinds::SourceFrame frame = source.next({time, {}});
     const auto& textures = frame.volumes[0].textures;
-    const std::vector<ddgi::Texels> texels(textures.begin(), textures.end());
+    const std::vector<kinds::Texels> texels(textures.begin(), textures.end());
     std::size_t sent = 0, sent_zstd = 0;
     for (const Packet& p : native.encode(texels)) sent += p.size();
     for (const Packet& p : zstd.encode(texels)) sent_zstd += p.size();

@@ -8,18 +8,7 @@
 namespace gicodec::kinds {
 namespace {
 
-/// Calls visit(offset, bytes) for each row of a block in a texture, tightly packed, until it
-/// answers true; returns that.
-template <typename Visit>
-bool any_row(const TextureDesc& desc, std::uint32_t block, const Visit& visit) {
-  const tools::BlockPlace place = tools::block_place(desc, extent(desc), block);
-  for (std::uint32_t slice = 0; slice < place.slices; ++slice) {
-    for (std::uint32_t y = 0; y < place.rows; ++y) {
-      if (visit(place.row(y, slice), place.row_bytes)) return true;
-    }
-  }
-  return false;
-}
+using tools::any_row;
 
 /// Whether a block differs between two contents of a texture.
 bool differs(const TextureDesc& desc, Texels a, Texels b, std::uint32_t block) {

@@ -29,7 +29,7 @@ using namespace gicodec::streaming;
 using tools::Exit;
 using tools::fail;
 
-constexpr int kMost = std::numeric_limits<int>::max();
+constexpr int kMax = std::numeric_limits<int>::max();
 
 struct Options {
   std::string connect, output, record, delivery = "own", size = "480x270", subscribe,
@@ -64,10 +64,10 @@ void add_flags(tools::Command& app, Options& o) {
       ->show_default();
   app.add_option("--budget-blocks", o.viewer.client.budget.blocks,
                  "Blocks (probes) per update, at most; 0: no limit")
-      ->allow(tools::in_range(0, kMost));
+      ->allow(tools::in_range(0, kMax));
   app.add_option("--budget-bytes", o.viewer.client.budget.bytes,
                  "Bytes per update, at most; 0: no limit")
-      ->allow(tools::in_range(0, kMost));
+      ->allow(tools::in_range(0, kMax));
   app.add_option("--max-memory", o.memory,
                  "MiB that decoding may take, and drawing; a server may ask "
                  "for much")
@@ -78,7 +78,7 @@ void add_flags(tools::Command& app, Options& o) {
                  "all, or the probes of a box in the grid, whatever is looked at")
       ->type_name("all|X0-X1,Y0-Y1,Z0-Z1");
   app.add_option("--updates", o.viewer.updates, "Leave after N updates; 0: do not")
-      ->allow(tools::in_range(0, kMost))
+      ->allow(tools::in_range(0, kMax))
       ->type_name("N");
   app.add_option("--seconds", o.viewer.seconds, "Leave after so long; 0: do not")
       ->allow(tools::in_range(0.0, 1e9));
@@ -234,7 +234,7 @@ Exit judge(const Options& o, const Received& r) {
   return Exit::ok;
 }
 
-Exit run_crowd(const Options& o, const CameraPath& path) {
+Exit run_load_test(const Options& o, const CameraPath& path) {
   const SimulateOptions options{
       o.viewer.link.server, o.viewer.link.net, o.viewer.client,        o.simulate,
       o.viewer.updates,     o.viewer.seconds,  o.viewer.link.patience, o.viewer.scene};
@@ -271,11 +271,12 @@ Exit recorded(const Options& o, const ClientRecording* recording) {
   return Exit::different;
 }
 
-Exit run_viewer(Options& o, const CameraPath& path, Painter* painter, ClientRecording* recording) {
+Exit run_viewer(Options& o, const CameraPath& path, Renderer* renderer,
+                ClientRecording* recording) {
   std::unique_ptr<tools::OutputDirectory> folder;
-  if (painter != nullptr) folder = std::make_unique<tools::OutputDirectory>(o.output);
+  if (renderer != nullptr) folder = std::make_unique<tools::OutputDirectory>(o.output);
   o.viewer.client.listener = recording;
-  const ViewerResult result = watch(o.viewer, path, painter);
+  const ViewerResult result = watch(o.viewer, path, renderer);
   if (recording != nullptr) recording->finish();
   const bool failed = result.state == ClientLink::State::failed;
   if (result.connections == 0 && !failed && !tools::interrupted()) fail_unanswered(o);
@@ -305,7 +306,7 @@ Exit run_viewer(Options& o, const CameraPath& path, Painter* painter, ClientReco
 /// All that takes long before there is a client.
 struct Loaded {
   std::unique_ptr<ddgi::Scene> scene;
-  std::unique_ptr<Painter> painter;
+  std::unique_ptr<Renderer> renderer;
 };
 
 Loaded load(const Options& o, const ddgi::RenderOptions& render) {
@@ -313,7 +314,7 @@ Loaded load(const Options& o, const ddgi::RenderOptions& render) {
   if (!o.scene.scene.empty() || !o.scene.gltf.empty())
     loaded.scene = std::make_unique<ddgi::Scene>(kinds::load_scene(o.scene));
   if (o.viewer.frames > 0)
-    loaded.painter = std::make_unique<Painter>(
+    loaded.renderer = std::make_unique<Renderer>(
         loaded.scene.get(), render, o.threads,
         PictureFolder(o.output, tools::overwrite_if(o.overwrite),
                       loaded.scene ? tools::InputFiles(loaded.scene->files) : tools::InputFiles()),
@@ -366,7 +367,7 @@ Exit run(Options& o) {
   const CameraPath path(o.camera, scene);
   // Without a view there is nothing that the server could choose by.
   o.viewer.subscribe_all = o.subscribe == "all" || (o.subscribe.empty() && !path.known());
-  if (o.simulate > 0) return run_crowd(o, path);
+  if (o.simulate > 0) return run_load_test(o, path);
   std::unique_ptr<ClientRecording> recording;
   if (!o.record.empty()) {
     if (scene != nullptr) {
@@ -376,7 +377,7 @@ Exit run(Options& o) {
     recording = std::make_unique<ClientRecording>(RecordingOptions{
         o.record, tools::overwrite_if(o.overwrite), std::uint64_t{o.max_record_mb} << 20, o.quiet});
   }
-  return run_viewer(o, path, loaded->painter.get(), recording.get());
+  return run_viewer(o, path, loaded->renderer.get(), recording.get());
 }
 
 }  // namespace

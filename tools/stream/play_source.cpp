@@ -5,6 +5,7 @@
 #include "common/stored_texture.h"
 #include "common/volume_words.h"
 #include "ddgi/scene_id.h"
+#include "dump/block_place.h"
 #include "dump/dump.h"
 #include "dump/error.h"
 #include "dump/geometry_attributes.h"
@@ -143,7 +144,7 @@ class RecordingPlayer final : public Player {
     std::string remark;  ///< on those that cannot be played; empty if all can
   };
   Chosen choose() {
-    constexpr std::size_t kMostWords = 4;
+    constexpr std::size_t kMaxWords = 4;
     const auto& all = input_->description().volumes;
     Chosen chosen;
     played_.clear();
@@ -154,12 +155,12 @@ class RecordingPlayer final : public Player {
       if (why.empty()) {
         chosen.volumes.push_back(volume(entry));
         for (std::size_t i = 0; i < entry.textures; ++i) played_.push_back(entry.first_texture + i);
-      } else if (++left_out <= kMostWords) {
+      } else if (++left_out <= kMaxWords) {
         words += (words.empty() ? "" : "; ") + why;
       }
     }
     if (left_out == 0) return chosen;
-    if (left_out > kMostWords) words += fmt::format("; and {} more", left_out - kMostWords);
+    if (left_out > kMaxWords) words += fmt::format("; and {} more", left_out - kMaxWords);
     if (chosen.volumes.empty()) {
       fail(Exit::bad_input,
            "{}: no volume of it can be played: {}; a newer gi-server may know more, and the "
@@ -274,20 +275,12 @@ class DumpPlayer final : public Player {
 
 /// Marks the blocks that have a record other than zero.
 void mark_used(const TextureDesc& desc, std::span<const std::byte> texels, BlockMask& used) {
-  const Extent whole = extent(desc);
-  const std::size_t record = desc.record.bytes, band = 2U * desc.guard_band;
-  const std::size_t pitch = static_cast<std::size_t>(whole.width) * record;
-  const std::size_t slices = static_cast<std::size_t>(whole.slices) /
-                             (desc.layout.tiling == Tiling::blocks ? block_count(desc) : 1);
   for (std::uint32_t block = 0; block < used.size(); ++block) {
-    const BlockOrigin at = block_origin(desc, block);
-    const BlockShape inside = block_inside(desc, block);
-    for (std::size_t row = 0; used[block] == 0 && row < inside.z * (inside.y + band); ++row) {
-      const std::size_t slice = at.block * slices + at.slice + row / (inside.y + band);
-      const std::size_t y = slice * whole.height + at.y + row % (inside.y + band);
-      const auto line = texels.subspan(y * pitch + at.x * record, (inside.x + band) * record);
-      used[block] = std::ranges::any_of(line, [](std::byte b) { return b != std::byte{}; });
-    }
+    const bool any = tools::any_row(desc, block, [&](std::size_t offset, std::size_t bytes) {
+      return std::ranges::any_of(texels.subspan(offset, bytes),
+                                 [](std::byte b) { return b != std::byte{}; });
+    });
+    if (any) used[block] = 1;
   }
 }
 

@@ -17,11 +17,11 @@ namespace {
 constexpr double kSpread = 16;  ///< seconds of the camera's path that are shared out
 constexpr double kAgain = 0.5;  ///< seconds before a lost client connects again
 constexpr std::chrono::milliseconds kIdle{1};
-constexpr double kGoodbye = 0.7;         ///< seconds for the last messages to arrive
-constexpr std::size_t kMost = 1U << 20;  ///< samples kept
+constexpr double kGoodbye = 0.7;        ///< seconds for the last messages to arrive
+constexpr std::size_t kMax = 1U << 20;  ///< samples kept
 
 void keep(std::vector<float>& samples, double value) {
-  if (samples.size() < kMost) samples.push_back(static_cast<float>(value));
+  if (samples.size() < kMax) samples.push_back(static_cast<float>(value));
 }
 
 struct Simulated {
@@ -41,9 +41,10 @@ struct Simulated {
   bool open = false, done = false, subscribed = false, was_welcome = false;
 };
 
-class Crowd {
+class LoadTest {
  public:
-  Crowd(const SimulateOptions& options, const CameraPath& path) : options_(options), path_(path) {
+  LoadTest(const SimulateOptions& options, const CameraPath& path)
+      : options_(options), path_(path) {
     // An ENet socket for each: with one for all, the kernel's buffer would be shared too, which is
     // not so between machines.
     const bool enet = options.server.via == Via::enet;
@@ -230,7 +231,7 @@ class Crowd {
 }  // namespace
 
 SimulateResult simulate(const SimulateOptions& options, const CameraPath& path) {
-  return Crowd(options, path).run();
+  return LoadTest(options, path).run();
 }
 
 }  // namespace gicodec::streaming
