@@ -13,7 +13,7 @@ TEST(Octree, OneBrickHoldsTheCoarsestLevel) {
   EXPECT_EQ(levels_of({4, 5, 4}, 4), 2U);
   EXPECT_EQ(levels_of({8, 1, 64}, 8), 4U);
   EXPECT_EQ(levels_of({8, 1, 65}, 8), 5U);
-  EXPECT_EQ(levels_of({kMostCells, 1, 1}, 4), kMaxBrickLevel + 1);
+  EXPECT_EQ(levels_of({kMaxCells, 1, 1}, 4), kMaxBrickLevel + 1);
 }
 
 RC_GTEST_PROP(Octree, ParentsAreTheMeansOfTheChildrenThatExist, (std::uint32_t seed, bool halves)) {

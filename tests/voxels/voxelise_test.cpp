@@ -64,9 +64,8 @@ RC_GTEST_PROP(Voxelise, TrianglesOverlapTheBoxesThatTheyReach, (std::uint32_t se
 
 /// That a surface of that normal is looked up in (docs/voxels.md, "Gathering").
 Directions faced_by(Vec3 n) {
-  constexpr float kLeast = 0.1F;
-  const std::array faced{n.x > kLeast, n.x<-kLeast, n.y> kLeast, n.y<-kLeast, n.z> kLeast,
-                         n.z < -kLeast};
+  constexpr float kMin = 0.1F;
+  const std::array faced{n.x > kMin, n.x<-kMin, n.y> kMin, n.y<-kMin, n.z> kMin, n.z < -kMin};
   Directions bits = 0;
   for (std::size_t d = 0; d < faced.size(); ++d) bits |= static_cast<Directions>(faced[d] << d);
   return bits;

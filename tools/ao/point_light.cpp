@@ -15,7 +15,7 @@ using ddgi::Vec3;
 
 constexpr float kNormals = 0.1F;    // T_n
 constexpr float kDistances = 0.7F;  // T_d
-constexpr std::uint32_t kMostInstances = 1U << 20;
+constexpr std::uint32_t kMaxInstances = 1U << 20;
 
 Affine affine_of(const AoTransform& m) {
   return {{m[0], m[4], m[8]}, {m[1], m[5], m[9]}, {m[2], m[6], m[10]}, {m[3], m[7], m[11]}};
@@ -43,9 +43,9 @@ VolumeDesc usual(const VolumeDesc& volume) {
   const bool points = volume.kind == kKindAoPoints && groups.size() == 3;
   if (!points) tools::fail(tools::Exit::bad_input, "AO points: the volume is of another kind");
   const std::uint32_t instances = groups[2].textures.front().desc.grid.x;
-  if (instances > kMostInstances)
+  if (instances > kMaxInstances)
     tools::fail(tools::Exit::bad_input, "AO points: {} instances cannot be drawn; up to {} can",
-                instances, kMostInstances);
+                instances, kMaxInstances);
   const auto blocks = [&](std::size_t group) {
     return block_count(groups[group].textures.front().desc);
   };

@@ -53,11 +53,10 @@ struct Tracer {
         server(scene, options, pool) {}
 };
 
-ddgi::Vec3 vec(const Position& p) { return {p[0], p[1], p[2]}; }
-
 ExtendedView view_of(const Viewpoint& viewer, float margin) {
-  return {
-      {vec(viewer.eye), vec(viewer.target), vec(viewer.up), viewer.fov_y}, viewer.aspect, margin};
+  return {{ddgi::vec(viewer.eye), ddgi::vec(viewer.target), ddgi::vec(viewer.up), viewer.fov_y},
+          viewer.aspect,
+          margin};
 }
 
 kinds::Source trace(kinds::TraceRequest request) {

@@ -56,10 +56,10 @@ class Neighbours {
   using Cell = std::array<std::int64_t, 3>;
 
   [[nodiscard]] Cell cell(Vec3 p) const {
-    constexpr float kMost = (1 << 21) - 3;
+    constexpr float kMax = (1 << 21) - 3;
     const Vec3 c = (p - low_) / reach_;
     const auto whole = [=](float v) {
-      return static_cast<std::int64_t>(std::clamp(v, 0.0F, kMost)) + 1;
+      return static_cast<std::int64_t>(std::clamp(v, 0.0F, kMax)) + 1;
     };
     return {whole(c.x), whole(c.y), whole(c.z)};
   }

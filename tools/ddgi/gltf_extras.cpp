@@ -12,7 +12,7 @@ namespace {
 using tinygltf::Value;
 
 constexpr const char* kName = "gicodec";
-constexpr double kMost = 1e6;  // metres, radiance
+constexpr double kMax = 1e6;  // metres, radiance
 
 Value array(Vec3 v) {
   return Value(Value::Array{Value(double{v.x}), Value(double{v.y}), Value(double{v.z})});
@@ -44,8 +44,8 @@ struct Part {
     std::array<double, 3> out{};
     for (std::size_t i = 0; i < 3; ++i) {
       const Value& number = list.Get(static_cast<int>(i));
-      out[i] = number.IsNumber() ? number.GetNumberAsDouble() : kMost + 1;
-      if (!(out[i] >= least && out[i] <= kMost)) fail(member, expected);
+      out[i] = number.IsNumber() ? number.GetNumberAsDouble() : kMax + 1;
+      if (!(out[i] >= least && out[i] <= kMax)) fail(member, expected);
     }
     return out;
   }
@@ -63,7 +63,7 @@ Sky read_sky(const Part& part) {
           .horizon = light("horizon"),
           .ground = light("ground"),
           .sun_direction =
-              direction(part.vector("sun_direction", -kMost, "three numbers that are not all 0")),
+              direction(part.vector("sun_direction", -kMax, "three numbers that are not all 0")),
           .glow = light("glow")};
   if (sky.sun_direction == Vec3{0, 0, 0})
     part.fail("sun_direction", "three numbers that are not all 0");
@@ -79,7 +79,7 @@ GltfExtras::Volume read_volume(const Part& part) {
   GltfExtras::Volume volume{
       {static_cast<std::uint32_t>(n[0]), static_cast<std::uint32_t>(n[1]),
        static_cast<std::uint32_t>(n[2])},
-      {part.vector("first", -kMost, "a position"), part.vector("last", -kMost, "a position")}};
+      {part.vector("first", -kMax, "a position"), part.vector("last", -kMax, "a position")}};
   if (validate(ddgi_irradiance(volume.grid)) != Status::ok) part.fail("grid", grid);
   const Vec3 size = volume.box.size();
   if (size.x <= 0 || size.y <= 0 || size.z <= 0) part.fail("last", "a position beyond the first");
@@ -120,7 +120,7 @@ GltfExtras read_extras(const Value& extras, const AccessorReader& reader) {
   const Value& exposure = ours->member("exposure");
   if (exposure.IsNumber()) {
     const double factor = exposure.GetNumberAsDouble();
-    if (!(factor >= 1e-6 && factor <= kMost))
+    if (!(factor >= 1e-6 && factor <= kMax))
       ours->fail("exposure", "a factor of 0.000001 to 1000000");
     out.exposure = static_cast<float>(factor);
   }

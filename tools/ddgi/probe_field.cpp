@@ -3,9 +3,9 @@
 namespace gicodec::ddgi {
 namespace {
 
-constexpr float kBias = 0.3F;          // of three quarters of the least spacing
-constexpr float kLeastWeight = 1e-6F;  // keeps a normalised answer where all probes are hidden
-constexpr float kCrush = 0.2F;         // weights below fade faster: contributions that leak
+constexpr float kBias = 0.3F;        // of three quarters of the least spacing
+constexpr float kMinWeight = 1e-6F;  // keeps a normalised answer where all probes are hidden
+constexpr float kCrush = 0.2F;       // weights below fade faster: contributions that leak
 
 /// Texels of a block with its guard band.
 constexpr std::size_t texels_of(std::uint32_t core) {
@@ -114,7 +114,7 @@ Cage ProbeField::cage(Vec3 position, Vec3 normal, Vec3 to_viewer) const {
         weight *= chebyshev * chebyshev * chebyshev;
       }
     }
-    weight = std::max(kLeastWeight, weight);
+    weight = std::max(kMinWeight, weight);
     if (weight < kCrush) weight *= weight * weight / (kCrush * kCrush);
     cage.weight[corner] = weight * trilinear;
     sum += cage.weight[corner];

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 
@@ -119,6 +120,10 @@ struct Box {
   [[nodiscard]] constexpr Vec3 size() const { return hi - lo; }
   [[nodiscard]] constexpr Vec3 center() const { return (lo + hi) * 0.5F; }
 };
+
+/// From and to places as the library has them.
+[[nodiscard]] constexpr Vec3 vec(const std::array<float, 3>& p) { return {p[0], p[1], p[2]}; }
+[[nodiscard]] constexpr std::array<float, 3> position(Vec3 v) { return {v.x, v.y, v.z}; }
 
 /// +x, −x, +y, −y, +z, −z.
 [[nodiscard]] constexpr Vec3 axis_of(std::size_t direction) {

@@ -1,5 +1,7 @@
 #include "volume.h"
 
+#include "dump/block_place.h"
+
 #include <gicodec/probes.h>
 
 #include <algorithm>
@@ -11,6 +13,18 @@ Vec3 VolumeShape::position(std::uint32_t probe) const {
   const std::uint32_t y = probe / grid.x % grid.y, z = probe / grid.x / grid.y;
   const Vec3 cell{static_cast<float>(probe % grid.x), static_cast<float>(y), static_cast<float>(z)};
   return origin + cell * spacing;
+}
+
+VolumeGeometry geometry_of(const VolumeShape& shape) {
+  return {shape.grid, ddgi::position(shape.origin), ddgi::position(shape.spacing), {}};
+}
+
+VolumeShape shape_of(const VolumeGeometry& g) {
+  VolumeShape shape{g.grid, vec(g.origin), vec(g.spacing)};
+  const Vec3 cells{static_cast<float>(g.scroll[0]), static_cast<float>(g.scroll[1]),
+                   static_cast<float>(g.scroll[2])};
+  shape.origin += cells * shape.spacing;
+  return shape;
 }
 
 VolumeShape spread(Grid grid, const Box& box) {
@@ -43,17 +57,6 @@ bool is_one_of(const TextureDesc& desc, std::span<const Format> formats) {
          std::find(formats.begin(), formats.end(), desc.record.format) != formats.end();
 }
 
-/// Calls row(offset in the texture, offset in the block, bytes) for each row of a block.
-template <typename Row>
-void for_rows(const TextureDesc& desc, std::uint32_t probe, Row row) {
-  const BlockOrigin at = block_origin(desc, probe);
-  const Extent size = extent(desc);
-  const std::size_t side = side_of(desc), bytes = side * desc.record.bytes;
-  const std::size_t top = (at.slice + at.block) * size.height + at.y;
-  for (std::size_t y = 0; y < side; ++y)
-    row(((top + y) * size.width + at.x) * desc.record.bytes, y * bytes, bytes);
-}
-
 }  // namespace
 
 bool any_light(const ProbeTextures& textures) {
@@ -71,15 +74,21 @@ bool is_visibility(const TextureDesc& desc) { return is_one_of(desc, visibility_
 
 void read_block(const TextureDesc& desc, std::span<const std::byte> texture, std::uint32_t probe,
                 std::span<std::byte> block) {
-  for_rows(desc, probe, [&](std::size_t from, std::size_t to, std::size_t bytes) {
-    std::memcpy(&block[to], &texture[from], bytes);
+  std::byte* to = block.data();
+  tools::any_row(desc, probe, [&](std::size_t from, std::size_t bytes) {
+    std::memcpy(to, &texture[from], bytes);
+    to += bytes;
+    return false;
   });
 }
 
 void write_block(const TextureDesc& desc, std::span<std::byte> texture, std::uint32_t probe,
                  std::span<const std::byte> block) {
-  for_rows(desc, probe, [&](std::size_t to, std::size_t from, std::size_t bytes) {
-    std::memcpy(&texture[to], &block[from], bytes);
+  const std::byte* from = block.data();
+  tools::any_row(desc, probe, [&](std::size_t to, std::size_t bytes) {
+    std::memcpy(&texture[to], from, bytes);
+    from += bytes;
+    return false;
   });
 }
 

@@ -5,7 +5,7 @@
 #include "sh.h"
 #include "texels.h"
 
-#include <gicodec/texture.h>
+#include <gicodec/volume.h>
 
 #include <span>
 #include <vector>
@@ -35,6 +35,10 @@ struct VolumeShape {
   /// Distances beyond this are stored as this: 1.5 × the diagonal of a cell.
   [[nodiscard]] float distance_cap() const { return 1.5F * length(spacing); }
 };
+
+/// As the library has it, and back: where the first probe stands after scrolling.
+[[nodiscard]] VolumeGeometry geometry_of(const VolumeShape& shape);
+[[nodiscard]] VolumeShape shape_of(const VolumeGeometry& geometry);
 
 /// The grid spread over a box, first and last probes on its faces.
 [[nodiscard]] VolumeShape spread(Grid grid, const Box& box);

@@ -25,6 +25,18 @@ struct BlockPlace {
 [[nodiscard]] BlockPlace block_place(const TextureDesc& desc, const Extent& size,
                                      std::uint32_t block) noexcept;
 
+/// Calls visit(offset, bytes) for each row of a block until it answers true; returns that.
+template <typename Visit>
+bool any_row(const TextureDesc& desc, std::uint32_t block, const Visit& visit) {
+  const BlockPlace place = block_place(desc, extent(desc), block);
+  for (std::uint32_t slice = 0; slice < place.slices; ++slice) {
+    for (std::uint32_t y = 0; y < place.rows; ++y) {
+      if (visit(place.row(y, slice), place.row_bytes)) return true;
+    }
+  }
+  return false;
+}
+
 /// Copies a block to one of the same size in another texture.
 void copy_block(const BlockPlace& from, std::span<const std::byte> source, const BlockPlace& to,
                 std::span<std::byte> target) noexcept;

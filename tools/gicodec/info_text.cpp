@@ -133,7 +133,8 @@ void print_volume(const ContainerReport& report, std::size_t place) {
     return group.textures.front().desc.space == Space::pool;
   };
   // Pools have no geometry, except pools of bricks.
-  const bool placed = volume.kind == kKindVoxels || !std::ranges::all_of(volume.desc.groups, is_pool);
+  const bool placed =
+      volume.kind == kKindVoxels || !std::ranges::all_of(volume.desc.groups, is_pool);
   if (volume.geometry && placed) {
     const VolumeGeometry& at = *volume.geometry;
     print("  origin {}, spacing {}, scroll {}\n", fmt::format("{}", fmt::join(at.origin, " ")),

@@ -65,9 +65,9 @@ void check_picture_name(const std::string& path) {
 std::pair<bool, std::uint64_t> tells(const ContainerDescription& description, std::size_t texture) {
   const VolumeEntry& volume = description.volumes[description.textures[texture].volume];
   std::size_t place = texture - volume.first_texture;
-  for (const TextureGroup& set : volume.desc.groups) {
-    if (place < set.textures.size()) {
-      const NamedTexture& named = set.textures[place];
+  for (const TextureGroup& group : volume.desc.groups) {
+    if (place < group.textures.size()) {
+      const NamedTexture& named = group.textures[place];
       if (named.preview != Preview::none) return {true, 0};  // so the first of these wins
       return {false, block_bytes(named.desc)};
     }

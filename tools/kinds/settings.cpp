@@ -6,6 +6,7 @@
 #include <fmt/core.h>
 
 #include <charconv>
+#include <cmath>
 #include <utility>
 
 namespace gicodec::kinds {
@@ -87,6 +88,19 @@ ddgi::GatherOptions gather_options(const Settings& settings, std::uint32_t least
           .anew = settings.whole("rays-anew", 0, 1) == 1,
           .warmup = settings.whole("warmup", 0, 100),
           .seed = seed};
+}
+
+std::vector<float> numbers_from_string(std::string_view text, std::size_t count) {
+  std::vector<float> values;
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  while (values.size() < count) {
+    if (!values.empty() && (at == end || *at++ != ',')) return {};
+    const auto parsed = std::from_chars(at, end, values.emplace_back());
+    if (parsed.ec != std::errc{} || !(std::abs(values.back()) <= 1e6F)) return {};
+    at = parsed.ptr;
+  }
+  return at == end ? values : std::vector<float>{};
 }
 
 std::string help_of(std::span<const Setting> known) {

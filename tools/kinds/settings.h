@@ -52,6 +52,9 @@ inline constexpr Setting kWarmup{"warmup", "3", "bounces before the first update
 [[nodiscard]] ddgi::GatherOptions gather_options(const Settings& settings, std::uint32_t least,
                                                  std::uint32_t most, std::uint32_t seed);
 
+/// "1,2.5,-3" with exactly `count` numbers up to a million, or none.
+[[nodiscard]] std::vector<float> numbers_from_string(std::string_view text, std::size_t count);
+
 /// A line for each, for --help.
 [[nodiscard]] std::string help_of(std::span<const Setting> known);
 

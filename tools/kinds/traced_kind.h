@@ -11,6 +11,7 @@
 #include <memory>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace gicodec::kinds {
@@ -21,6 +22,18 @@ struct TraceRequest {
   std::uint32_t seed = 1;                ///< of all that is random
   unsigned threads = 0;                  ///< as for ddgi::ThreadPool
   std::function<bool()> cancelled = {};  ///< likewise
+};
+
+/// A scene and what traces it: what a source keeps from frame to frame.
+template <typename Server>
+struct Tracer {
+  ddgi::Scene scene;
+  Server server;
+
+  template <typename Options>
+  Tracer(TraceRequest request, const Options& options)
+      : scene(std::move(request.scene)),
+        server(scene, options, request.threads, std::move(request.cancelled)) {}
 };
 
 struct TracedKind {

@@ -13,7 +13,7 @@ namespace gicodec::kinds {
 /// body(index) for every index below `count`, in batches that one thread takes each.
 template <typename Body>
 void for_all(std::size_t count, ddgi::ThreadPool& pool, const Body& body) {
-  constexpr std::size_t kBatch = 8;  // of so few that who interrupts does not wait
+  constexpr std::size_t kBatch = 8;  // so few that an interrupt is noticed soon
   pool.run((count + kBatch - 1) / kBatch, [&](std::size_t batch) {
     const std::size_t end = std::min(count, (batch + 1) * kBatch);
     for (std::size_t i = batch * kBatch; i < end; ++i) body(i);

@@ -7,7 +7,7 @@ namespace gicodec::maps {
 namespace {
 
 constexpr std::uint32_t kBlock = kMapBaseBlock * kMapBaseBlock;
-constexpr float kMost = 65504;  // of a half
+constexpr float kMax = 65504;  // of a half
 
 constexpr std::uint32_t kTileBits = kMapTile * kMapTile;
 
@@ -18,7 +18,7 @@ std::size_t bit_of(std::uint32_t width, std::uint32_t place) {
   return kTileBits * tile + x % kMapTile + kMapTile * (y % kMapTile);
 }
 
-float sane(float v) { return v > 0 ? std::min(v, kMost) : 0; }  // no NaN either
+float sane(float v) { return v > 0 ? std::min(v, kMax) : 0; }  // no NaN either
 
 }  // namespace
 

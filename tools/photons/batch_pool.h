@@ -16,7 +16,7 @@ struct PoolOptions {
 class BatchPool {
  public:
   struct Slot {
-    std::uint32_t light = 0, number = 0;  ///< of whom it is, and which of his
+    std::uint32_t light = 0, number = 0;  ///< its light, and its number there
     bool used = false, stale = false;
     std::uint64_t stale_since = 0;  ///< update
     Emitter emitter;                ///< by which it was shot

@@ -11,11 +11,10 @@
 namespace gicodec::photons {
 namespace {
 
+using ddgi::vec;
 using ddgi::Vec3;
 using tools::Exit;
 using tools::fail;
-
-Vec3 vec(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
 
 bool finite(Vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 bool at_least_zero(Vec3 v) { return v.x >= 0 && v.y >= 0 && v.z >= 0; }
@@ -47,9 +46,9 @@ HeldPhotons::HeldPhotons(const VolumeDesc& desc) {
                        desc.groups.front().textures.size() == 3;
   if (!photons) fail(Exit::bad_input, "this volume is not one of photons");
   const TextureDesc& records = desc.groups.front().textures.back().desc;
-  if (records.grid.x > kMostBatches)
+  if (records.grid.x > kMaxBatches)
     fail(Exit::bad_input, "photons: {} batches cannot be drawn; up to {} can", records.grid.x,
-         kMostBatches);
+         kMaxBatches);
   form_ = tools::take(photon_form(records.record), "photons");
   capacity_ = record_count(records.block);
   desc_ = tools::take(photon_volume(records.grid.x, capacity_, form_), "photons");

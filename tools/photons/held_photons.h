@@ -20,7 +20,7 @@ struct HeldPhoton {
 /// and expires after kOldest: until new batches replace it, old light fades.
 inline constexpr std::uint16_t kOldest = 7;
 /// That can be drawn.
-inline constexpr std::uint32_t kMostBatches = 1U << 16;
+inline constexpr std::uint32_t kMaxBatches = 1U << 16;
 
 class HeldPhotons {
  public:

@@ -8,7 +8,7 @@
 namespace gicodec::photons {
 namespace {
 
-constexpr std::uint32_t kMostEmitted = 1U << 20;
+constexpr std::uint32_t kMaxEmitted = 1U << 20;
 constexpr std::array<std::string_view, 2> kForms{"Q", "R"};
 constexpr std::array<kinds::Setting, 8> kSettings{{
     {"photons", "16384", "photons that each batch sends out, 1 to 1048576"},
@@ -30,7 +30,7 @@ std::uint32_t whole_block(std::uint32_t photons) {
 PoolOptions options_of(const kinds::Settings& settings, std::uint32_t seed) {
   PoolOptions options;
   ShotOptions& shots = options.shots;
-  shots.emitted = settings.whole("photons", 1, kMostEmitted);
+  shots.emitted = settings.whole("photons", 1, kMaxEmitted);
   shots.neighbours = settings.whole("neighbours", 1, 1000);
   shots.radius_bits = settings.whole("radius-bits", 0, 10);
   const std::uint32_t capacity = settings.whole("capacity", 0, kMaxPhotons);

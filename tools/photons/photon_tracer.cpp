@@ -10,7 +10,7 @@ namespace {
 
 using ddgi::Vec3;
 
-constexpr std::uint32_t kMostHits =
+constexpr std::uint32_t kMaxHits =
     32;  // of one photon; one that got so far carries next to nothing
 constexpr float kSpread = 0.02F;
 constexpr float kFar = 1e5F;
@@ -27,7 +27,7 @@ struct Paths {
 /// From a light of 1 watt on until it is absorbed or leaves the scene.
 void follow(const ddgi::RayScene& scene, Emission ray, Vec3 power, ddgi::Random& random,
             Paths& out) {
-  for (std::uint32_t hits = 0; hits < kMostHits; ++hits) {
+  for (std::uint32_t hits = 0; hits < kMaxHits; ++hits) {
     const auto surface = scene.intersect(ray.origin, ray.direction, kSpread);
     out.segments.push_back(
         {ray.origin, surface ? surface->position : ray.origin + ray.direction * kFar});
@@ -92,17 +92,15 @@ ddgi::Box box_of(const PhotonBatch& batch) {
 /// The former box where it is hardly larger: photons that come and go at the rim do not move
 /// others.
 ddgi::Box steady(const ddgi::Box& former, const ddgi::Box& box) {
-  constexpr float kMost = 1.25F;
+  constexpr float kMax = 1.25F;
   const auto holds = [](float lo, float hi, float from, float to) {
-    return lo <= from && hi >= to && hi - lo <= kMost * (to - from);
+    return lo <= from && hi >= to && hi - lo <= kMax * (to - from);
   };
   const bool all = holds(former.lo.x, former.hi.x, box.lo.x, box.hi.x) &&
                    holds(former.lo.y, former.hi.y, box.lo.y, box.hi.y) &&
                    holds(former.lo.z, former.hi.z, box.lo.z, box.hi.z);
   return all ? former : box;
 }
-
-Position position(Vec3 v) { return {v.x, v.y, v.z}; }
 
 }  // namespace
 

@@ -11,8 +11,8 @@ namespace gicodec::photons {
 namespace {
 
 using ddgi::Vec3;
-constexpr float kFlatness = 4;  // how much nearer a photon must be along the normal, squared
-constexpr float kLeastCovered = 0.75F;  // less is taken for this: little is known then
+constexpr float kFlatness = 4;        // how much nearer a photon must be along the normal, squared
+constexpr float kMinCovered = 0.75F;  // less is taken for this: little is known then
 
 }  // namespace
 
@@ -64,7 +64,7 @@ SplatPicture::SplatPicture(const ddgi::RayScene& scene, const ddgi::PictureView&
   see(scene, view, pool);
   std::uint64_t photons = 1;
   for (const auto& batch : batches) photons += batch.photons.size();
-  const std::uint64_t room = std::max<std::uint64_t>(kMostTests / photons, 16);
+  const std::uint64_t room = std::max<std::uint64_t>(kMaxTests / photons, 16);
   const Projector project(view, width_, height_);
   std::vector<std::vector<Splat>> splats(batches.size());
   pool.run(batches.size(), [&](std::size_t b) {
@@ -96,7 +96,7 @@ SplatPicture::SplatPicture(const ddgi::RayScene& scene, const ddgi::PictureView&
   kinds::for_all(pixels_.size(), pool, [&](std::size_t i) {
     Pixel& pixel = pixels_[i];
     if (pixel.weight > 0)
-      pixel.sum *= 1 / std::max(covered(pixel, project, view.camera.eye), kLeastCovered);
+      pixel.sum *= 1 / std::max(covered(pixel, project, view.camera.eye), kMinCovered);
   });
 }
 

@@ -14,7 +14,7 @@ class SplatPicture {
 
   /// The surfaces that its pixels show, for each the sum of what photons bring. The same photons
   /// give the same bits, whatever the number of threads. Work is bounded: where photons are so
-  /// many and so wide that their areas in the picture exceed kMostTests in all, the widest ones are
+  /// many and so wide that their areas in the picture exceed kMaxTests in all, the widest ones are
   /// narrowed.
   SplatPicture(const ddgi::RayScene& scene, const ddgi::PictureView& view,
                std::span<const HeldPhotons::Batch> batches, ddgi::ThreadPool& pool);
@@ -24,7 +24,7 @@ class SplatPicture {
 
   /// Pixels that photons were compared with.
   [[nodiscard]] std::uint64_t tests() const noexcept { return tests_; }
-  static constexpr std::uint64_t kMostTests = std::uint64_t{1} << 30;
+  static constexpr std::uint64_t kMaxTests = std::uint64_t{1} << 30;
 
  private:
   struct Pixel {

@@ -48,8 +48,6 @@ std::vector<Shown> engine_textures(const ddgi::EngineTextures& engine, ddgi::Enc
   return all;
 }
 
-Position position(Vec3 v) { return {v.x, v.y, v.z}; }
-
 /// What a dump of it says, but for scene and time.
 tools::DumpInfo info_of(const Shown& texture, const VolumeShape& shape) {
   const auto text = [](Vec3 v) { return fmt::format("{} {} {}", v.x, v.y, v.z); };
@@ -77,14 +75,6 @@ BlockMask mask_of(std::span<const std::uint32_t> probes, std::size_t count) {
   BlockMask mask(count);
   for (const std::uint32_t probe : probes) mask[probe] = 1;
   return mask;
-}
-
-/// Where the volume's first probe stands now.
-VolumeShape shape_of(const VolumeGeometry& g) {
-  const auto at = [&](std::size_t axis) {
-    return g.origin[axis] + static_cast<float>(g.scroll[axis]) * g.spacing[axis];
-  };
-  return {g.grid, {at(0), at(1), at(2)}, {g.spacing[0], g.spacing[1], g.spacing[2]}};
 }
 
 bool off_middle(const VolumeGeometry& g, const Position& eye) {
@@ -125,8 +115,7 @@ std::vector<kinds::SourceVolume> ProbeServer::volumes() const {
   world.name = engine_ ? std::string(options_.layout->name) : "world";
   world.desc = engine_ ? engine_->volume() : volume_of(shown);
   world.geometry.grid = shown.front().desc.grid;
-  if (world.geometry.grid == shape.grid)
-    world.geometry = {shape.grid, position(shape.origin), position(shape.spacing), {}};
+  if (world.geometry.grid == shape.grid) world.geometry = ddgi::geometry_of(shape);
   for (const Shown& texture : shown) world.files.push_back(info_of(texture, shape));
   std::vector<kinds::SourceVolume> all{std::move(world)};
   if (!fine_geometry_) return all;
@@ -189,8 +178,9 @@ kinds::SourceFrame ProbeServer::next(const kinds::SourceRequest& request) {
   for (const Shown& texture : shown)
     world.textures.emplace_back(texture.texels.begin(), texture.texels.end());
   if (fine_geometry_) {
-    const Position eye = request.viewers.empty() ? position(scene_.camera_at(request.time).eye)
-                                                 : request.viewers.front().eye;
+    const Position eye = request.viewers.empty()
+                             ? ddgi::position(scene_.camera_at(request.time).eye)
+                             : request.viewers.front().eye;
     frame.volumes.push_back(trace_fine(eye, request.time));
   }
   frame.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -203,7 +193,7 @@ kinds::SourceFrame::Volume ProbeServer::trace_fine(const Position& eye, double t
     g.scroll = scroll_to(g, eye);
     ddgi::TraceOptions options = options_.trace;
     options.mode = ddgi::TraceMode::converged;  // What enters has no past to blend with.
-    fine_ = std::make_unique<DdgiVolume>(rays_, shape_of(g), options, pool_);
+    fine_ = std::make_unique<DdgiVolume>(rays_, ddgi::shape_of(g), options, pool_);
   }
   fine_->update(time);
   const auto places = blocks_by_cell(g);

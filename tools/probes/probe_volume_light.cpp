@@ -37,9 +37,6 @@ ddgi::Encoding encoding_of(const kinds::HeldTexture& texture) {
 
 ProbeField field_of(const kinds::HeldVolume& volume) {
   const VolumeGeometry& g = volume.geometry;
-  const auto origin = [&](std::size_t axis) {
-    return g.origin[axis] + static_cast<float>(g.scroll[axis]) * g.spacing[axis];
-  };
   ddgi::ProbeTextures textures;
   for (const kinds::HeldTexture& texture : volume.textures) {
     if (ddgi::is_color(texture.desc) && textures.color.empty()) {
@@ -57,8 +54,7 @@ ProbeField field_of(const kinds::HeldVolume& volume) {
          "with a scene",
          ddgi::names_of(ddgi::color_formats()), ddgi::names_of(ddgi::visibility_formats()));
   }
-  ProbeField field(
-      {g.grid, {origin(0), origin(1), origin(2)}, {g.spacing[0], g.spacing[1], g.spacing[2]}});
+  ProbeField field(ddgi::shape_of(g));
   field.set_visibility(textures);
   field.set_color(textures);
   return field;

@@ -173,7 +173,6 @@ class Client {
     VolumeShape shape = volume_of(flags, scene_);
     const FrameFacts facts = shown.facts_at(options_.frame);
     if (flags.bounds.empty() && facts.origin && facts.spacing) {
-      const auto vec = [](const Position& p) { return Vec3{p[0], p[1], p[2]}; };
       shape.origin = vec(*facts.origin);
       shape.spacing = vec(*facts.spacing);
     }
@@ -187,8 +186,7 @@ class Client {
       fail(Exit::bad_input, "{}: its volume lies outside of {}; {}", shown.source(), scene_.name,
            flags.bounds.empty() ? "was it traced in another scene?" : "leave out --bounds");
     }
-    const auto position = [](Vec3 v) { return Position{v.x, v.y, v.z}; };
-    shown.place({grid, position(shape.origin), position(shape.spacing), {}});
+    shown.place(geometry_of(shape));
   }
 
   const Options& options_;

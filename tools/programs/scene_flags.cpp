@@ -5,10 +5,10 @@
 #include "dump/dump.h"
 #include "dump/error.h"
 #include "dump/text.h"
+#include "kinds/settings.h"
 
 #include <gicodec/probes.h>
 
-#include <charconv>
 #include <filesystem>
 
 namespace gicodec::kinds {
@@ -59,21 +59,9 @@ std::string scene_label(const SceneFlags& flags) {
 }
 
 std::vector<float> numbers(const std::string& text, std::size_t count, const char* what) {
-  std::vector<float> values;
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  while (values.size() < count) {
-    float value = 0;
-    const auto parsed = std::from_chars(at, end, value);
-    if (parsed.ec != std::errc{} || !(std::abs(value) <= 1e6F)) break;
-    values.push_back(value);
-    at = parsed.ptr;
-    if (at == end || *at != ',') break;
-    ++at;
-  }
-  if (values.size() != count || at != end) {
+  auto values = numbers_from_string(text, count);
+  if (values.empty())
     fail(Exit::usage, "{}: expected {} numbers with commas between, not \"{}\"", what, count, text);
-  }
   return values;
 }
 

@@ -63,7 +63,6 @@ Camera CameraPath::at(double time) const {
 }
 
 Viewpoint viewpoint(const Camera& camera, float aspect, double time) {
-  const auto position = [](Vec3 v) { return Position{v.x, v.y, v.z}; };
   return {
       position(camera.eye),    position(camera.target), position(camera.up), camera.fov_y, aspect,
       static_cast<float>(time)};

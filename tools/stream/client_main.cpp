@@ -114,9 +114,9 @@ Exit recorded(const ClientFlags& o, const ClientRecording* recording) {
 Exit run_viewer(ClientFlags& o, const CameraPath& path, Painter* painter,
                 ClientRecording* recording) {
   std::unique_ptr<tools::OutputDirectory> folder;
-  if (painter != nullptr) folder = std::make_unique<tools::OutputDirectory>(o.output);
+  if (renderer != nullptr) folder = std::make_unique<tools::OutputDirectory>(o.output);
   o.viewer.client.listener = recording;
-  const ViewerResult result = watch(o.viewer, path, painter);
+  const ViewerResult result = watch(o.viewer, path, renderer);
   if (recording != nullptr) recording->finish();
   const bool failed = result.state == ClientLink::State::failed;
   if (result.connections == 0 && !failed && !tools::interrupted()) fail_unanswered(o);
@@ -146,7 +146,7 @@ Exit run_viewer(ClientFlags& o, const CameraPath& path, Painter* painter,
 /// All that takes long before there is a client.
 struct Loaded {
   std::unique_ptr<ddgi::Scene> scene;
-  std::unique_ptr<Painter> painter;
+  std::unique_ptr<Renderer> renderer;
 };
 
 Loaded load(const ClientFlags& o, const ddgi::RenderOptions& render) {
@@ -154,7 +154,7 @@ Loaded load(const ClientFlags& o, const ddgi::RenderOptions& render) {
   if (!o.scene.scene.empty() || !o.scene.gltf.empty())
     loaded.scene = std::make_unique<ddgi::Scene>(kinds::load_scene(o.scene));
   if (o.viewer.frames > 0)
-    loaded.painter = std::make_unique<Painter>(
+    loaded.renderer = std::make_unique<Renderer>(
         loaded.scene.get(), render, o.threads,
         PictureFolder(o.output, tools::overwrite_if(o.overwrite),
                       loaded.scene ? tools::InputFiles(loaded.scene->files) : tools::InputFiles()),
@@ -207,7 +207,7 @@ Exit run(ClientFlags& o) {
   const CameraPath path(o.camera, scene);
   // Without a view there is nothing that the server could choose by.
   o.viewer.subscribe_all = o.subscribe == "all" || (o.subscribe.empty() && !path.known());
-  if (o.simulate > 0) return run_crowd(o, path);
+  if (o.simulate > 0) return run_load_test(o, path);
   std::unique_ptr<ClientRecording> recording;
   if (!o.record.empty()) {
     if (scene != nullptr) {
@@ -217,7 +217,7 @@ Exit run(ClientFlags& o) {
     recording = std::make_unique<ClientRecording>(RecordingOptions{
         o.record, tools::overwrite_if(o.overwrite), std::uint64_t{o.max_record_mb} << 20, o.quiet});
   }
-  return run_viewer(o, path, loaded->painter.get(), recording.get());
+  return run_viewer(o, path, loaded->renderer.get(), recording.get());
 }
 
 }  // namespace

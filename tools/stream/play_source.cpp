@@ -5,6 +5,7 @@
 #include "common/stored_texture.h"
 #include "common/volume_words.h"
 #include "ddgi/scene_id.h"
+#include "dump/block_place.h"
 #include "dump/dump.h"
 #include "dump/error.h"
 #include "dump/geometry_attributes.h"
@@ -274,20 +275,12 @@ class DumpPlayer final : public Player {
 
 /// Marks the blocks that have a record other than zero.
 void mark_used(const TextureDesc& desc, std::span<const std::byte> texels, BlockMask& used) {
-  const Extent whole = extent(desc);
-  const std::size_t record = desc.record.bytes, band = 2U * desc.guard_band;
-  const std::size_t pitch = static_cast<std::size_t>(whole.width) * record;
-  const std::size_t slices = static_cast<std::size_t>(whole.slices) /
-                             (desc.layout.tiling == Tiling::blocks ? block_count(desc) : 1);
   for (std::uint32_t block = 0; block < used.size(); ++block) {
-    const BlockOrigin at = block_origin(desc, block);
-    const BlockShape inside = block_inside(desc, block);
-    for (std::size_t row = 0; used[block] == 0 && row < inside.z * (inside.y + band); ++row) {
-      const std::size_t slice = at.block * slices + at.slice + row / (inside.y + band);
-      const std::size_t y = slice * whole.height + at.y + row % (inside.y + band);
-      const auto line = texels.subspan(y * pitch + at.x * record, (inside.x + band) * record);
-      used[block] = std::ranges::any_of(line, [](std::byte b) { return b != std::byte{}; });
-    }
+    const bool any = tools::any_row(desc, block, [&](std::size_t offset, std::size_t bytes) {
+      return std::ranges::any_of(texels.subspan(offset, bytes),
+                                 [](std::byte b) { return b != std::byte{}; });
+    });
+    if (any) used[block] = 1;
   }
 }
 

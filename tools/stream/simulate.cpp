@@ -41,9 +41,10 @@ struct Simulated {
   bool open = false, done = false, subscribed = false, was_welcome = false;
 };
 
-class Crowd {
+class LoadTest {
  public:
-  Crowd(const SimulateOptions& options, const CameraPath& path) : options_(options), path_(path) {
+  LoadTest(const SimulateOptions& options, const CameraPath& path)
+      : options_(options), path_(path) {
     // An ENet socket for each: with one for all, the kernel's buffer would be shared too, which is
     // not so between machines.
     const bool enet = options.server.via == Via::enet;
@@ -231,7 +232,7 @@ class Crowd {
 }  // namespace
 
 SimulateResult simulate(const SimulateOptions& options, const CameraPath& path) {
-  return Crowd(options, path).run();
+  return LoadTest(options, path).run();
 }
 
 }  // namespace gicodec::streaming

@@ -36,10 +36,10 @@ std::vector<std::string> lossy_textures(const ClientFrame& frame) {
 
 class Viewer {
  public:
-  Viewer(const ViewerOptions& options, const CameraPath& path, Painter* painter)
+  Viewer(const ViewerOptions& options, const CameraPath& path, Renderer* renderer)
       : options_(options),
         path_(path),
-        painter_(painter),
+        renderer_(renderer),
         client_(tools::take(
             ClientThread::start(tools::take(Client::create(options.client), "client")), "client")),
         link_(options.link, client_) {}
@@ -55,7 +55,7 @@ class Viewer {
       if (frame.serial != seen_) take(frame, at);
       if (options_.seconds > 0 && at - begin_ > options_.seconds) break;
       if (enough(frame)) break;
-      if (painter_ != nullptr && result_.frames < options_.frames && frame.serial > 0 &&
+      if (renderer_ != nullptr && result_.frames < options_.frames && frame.serial > 0 &&
           at >= next_picture_) {
         if (holds_light(frame)) {
           draw(frame, at);
@@ -141,7 +141,7 @@ class Viewer {
   void draw(const ClientFrame& frame, double at) {
     const ddgi::Camera camera = path_.known() ? path_.at(frame.time) : ddgi::Camera{};
     try {
-      result_.render_seconds += painter_->draw(frame, camera, result_.frames);
+      result_.render_seconds += renderer_->draw(frame, camera, result_.frames);
       ++result_.frames;
     } catch (const ddgi::Cancelled&) {
       return;  // Interrupted.
@@ -188,7 +188,7 @@ class Viewer {
 
   const ViewerOptions& options_;
   const CameraPath& path_;
-  Painter* painter_;
+  Renderer* renderer_;
   ClientThread client_;
   ClientLink link_;
   ViewerResult result_;
@@ -199,8 +199,8 @@ class Viewer {
 
 }  // namespace
 
-ViewerResult watch(const ViewerOptions& options, const CameraPath& path, Painter* painter) {
-  return Viewer(options, path, painter).run();
+ViewerResult watch(const ViewerOptions& options, const CameraPath& path, Renderer* renderer) {
+  return Viewer(options, path, renderer).run();
 }
 
 }  // namespace gicodec::streaming

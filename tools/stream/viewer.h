@@ -3,7 +3,7 @@
 
 #include "client_camera.h"
 #include "client_link.h"
-#include "painter.h"
+#include "renderer.h"
 
 #include <gicodec/client.h>
 
@@ -50,8 +50,8 @@ struct ViewerResult {
   double render_seconds = 0;  ///< of all frames
 };
 
-/// `painter` may be nullptr if no frames are asked for. Throws tools::Error.
+/// `renderer` may be nullptr if no frames are asked for. Throws tools::Error.
 [[nodiscard]] ViewerResult watch(const ViewerOptions& options, const CameraPath& path,
-                                 Painter* painter);
+                                 Renderer* renderer);
 
 }  // namespace gicodec::streaming

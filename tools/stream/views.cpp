@@ -11,12 +11,11 @@
 namespace gicodec::streaming {
 namespace {
 
+using ddgi::vec;
 using ddgi::Vec3;
 
 /// Looks a little past the picture's edges: heads turn between two updates.
 constexpr float kWider = 1.2F;
-
-Vec3 vec(const Position& p) { return {p[0], p[1], p[2]}; }
 
 struct Frame {
   Vec3 forward, right, up;

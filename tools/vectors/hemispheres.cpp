@@ -9,7 +9,7 @@
 namespace gicodec::vectors {
 namespace {
 
-constexpr float kLeastLight = 1e-30F;
+constexpr float kMinLight = 1e-30F;
 constexpr float kLargest = 1e30F;  // of what is loaded, so that sums stay finite
 
 std::byte snorm(float value) {
@@ -34,7 +34,7 @@ DirectedColor compress(const Vectors& vectors, std::size_t hemisphere) {
   // Squares of very small or large light would be none, or not finite.
   const Vec3 sum = vectors.red + vectors.green + vectors.blue;
   const float largest = std::max({std::abs(sum.x), std::abs(sum.y), std::abs(sum.z)});
-  if (!(largest > kLeastLight)) return {axis, {}};
+  if (!(largest > kMinLight)) return {axis, {}};
   const Vec3 direction = normalize(sum / largest);
   const float along = dot(direction, axis);
   if (!(along > 0)) return {axis, {}};

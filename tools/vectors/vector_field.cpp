@@ -5,7 +5,7 @@
 namespace gicodec::vectors {
 namespace {
 
-constexpr float kLeastWeight = 1e-20F;  // less could not be divided by
+constexpr float kMinWeight = 1e-20F;  // less could not be divided by
 
 /// Vertices along one axis and their weights.
 struct Taps {
@@ -50,7 +50,7 @@ Vec3 VectorField::irradiance(Vec3 position, Vec3 normal, Interpolation interpola
       for (unsigned i = 0; i < x.count; ++i) {
         const float weight = x.weight[i] * y.weight[j] * z.weight[k];
         const std::size_t at = row + x.at[i];
-        if (!(weight > kLeastWeight) || known[at] == 0) continue;
+        if (!(weight > kMinWeight) || known[at] == 0) continue;
         for (std::size_t h = 0; h < hemisphere.size(); ++h) {
           sum += vertices[at][hemisphere[h]].along(normal) * (weight * share[h]);
         }

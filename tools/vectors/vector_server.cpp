@@ -30,12 +30,9 @@ void add(Vertex& sum, Vec3 direction, Vec3 radiance) {
 }  // namespace
 
 VolumeGeometry geometry_of(const Box& box, Grid grid) {
-  const VolumeShape shape = ddgi::spread(grid, box);
-  const auto positive = [](float step) { return step > 0 ? step : 1.0F; };
-  return {grid,
-          {shape.origin.x, shape.origin.y, shape.origin.z},
-          {positive(shape.spacing.x), positive(shape.spacing.y), positive(shape.spacing.z)},
-          {}};
+  VolumeGeometry geometry = ddgi::geometry_of(ddgi::spread(grid, box));
+  for (float& step : geometry.spacing) step = step > 0 ? step : 1;
+  return geometry;
 }
 
 VectorServer::VectorServer(const Scene& scene, const VectorOptions& options, unsigned threads,
@@ -78,8 +75,7 @@ void VectorServer::step(double time) {
 
 bool VectorServer::gather(std::uint32_t vertex, std::span<const Vec3> directions, Vertex& out,
                           std::uint64_t& rays) const {
-  const Position at = block_position(field_.geometry, vertex);
-  const Vec3 origin{at[0], at[1], at[2]};
+  const Vec3 origin = vec(block_position(field_.geometry, vertex));
   const auto n = static_cast<float>(directions.size());
   const auto light = [&](const Surface& hit) {
     return direct_light(scene_, hit, rays) +

@@ -1,5 +1,6 @@
 #include "vectors.h"
 
+#include "dump/dump.h"
 #include "dump/error.h"
 
 #include <gicodec/irradiance_vectors.h>
@@ -8,7 +9,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <string_view>
 #include <utility>
 
@@ -33,49 +33,23 @@ constexpr std::array<std::string_view, 2> kInterpolations{"trilinear", "tricubic
 constexpr std::array<std::string_view, 3> kFills{"none", "push-pull", "smooth"};
 constexpr std::array<std::string_view, 2> kForms{"quantised", "floats"};
 
-constexpr std::uint32_t kMostVertices = 256;
-
-/// Numbers with one character between them, to the end.
-template <typename Number>
-bool parse(std::string_view text, char between, std::span<Number> numbers) {
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    if (i > 0 && (at == end || *at++ != between)) return false;
-    const auto parsed = std::from_chars(at, end, numbers[i]);
-    if (parsed.ec != std::errc{}) return false;
-    at = parsed.ptr;
-  }
-  return at == end;
-}
+constexpr std::uint32_t kMaxVertices = 256;
 
 Grid grid_of(const std::string& text) {
-  std::array<std::uint32_t, 3> n{};
-  if (parse<std::uint32_t>(text, 'x', std::span(n).first(1))) {
-    n[1] = n[2] = n[0];
-  } else if (!parse<std::uint32_t>(text, 'x', n)) {
-    n = {};
+  const bool cube = text.find('x') == std::string::npos;
+  const auto grid = tools::grid_from_string(cube ? fmt::format("{0}x{0}x{0}", text) : text, 2);
+  if (!grid || std::max({grid->x, grid->y, grid->z}) > kMaxVertices) {
+    tools::fail(tools::Exit::usage,
+                "--set vertices: expected 2 to {} or three such numbers as in 32x16x32, not \"{}\"",
+                kMaxVertices, text);
   }
-  for (const std::uint32_t side : n) {
-    if (side < 2 || side > kMostVertices) {
-      tools::fail(tools::Exit::usage,
-                  "--set vertices: expected 2 to {} or three such numbers as in 32x16x32, not "
-                  "\"{}\"",
-                  kMostVertices, text);
-    }
-  }
-  return {n[0], n[1], n[2]};
+  return *grid;
 }
 
 ddgi::Box box_of(const std::string& text, const ddgi::Scene& scene) {
   if (text == "scene") return scene.volume;
-  std::array<float, 6> c{};
-  constexpr float kFar = 1e6F;
-  bool sound = parse<float>(text, ',', c);
-  for (std::size_t i = 0; i < 3 && sound; ++i) {
-    sound = c[i] >= -kFar && c[i] < c[i + 3] && c[i + 3] <= kFar;
-  }
-  if (!sound) {
+  const auto c = kinds::numbers_from_string(text, 6);
+  if (c.empty() || !(c[0] < c[3] && c[1] < c[4] && c[2] < c[5])) {
     tools::fail(tools::Exit::usage,
                 "--set box: expected \"scene\" or X,Y,Z,X,Y,Z with each of the last three above "
                 "that of the first three, not \"{}\"",
@@ -84,20 +58,9 @@ ddgi::Box box_of(const std::string& text, const ddgi::Scene& scene) {
   return {{c[0], c[1], c[2]}, {c[3], c[4], c[5]}};
 }
 
-/// What one source keeps from frame to frame.
-struct Tracer {
-  ddgi::Scene scene;
-  VectorServer server;
-
-  explicit Tracer(kinds::TraceRequest request)
-      : scene(std::move(request.scene)),
-        server(scene, options_of(request.settings, scene, request.seed), request.threads,
-               std::move(request.cancelled)) {}
-};
-
 kinds::Source trace(kinds::TraceRequest request) {
-  const auto tracer = std::make_shared<Tracer>(std::move(request));
-  const VectorOptions& options = tracer->server.options();
+  const VectorOptions options = options_of(request.settings, request.scene, request.seed);
+  const auto tracer = std::make_shared<kinds::Tracer<VectorServer>>(std::move(request), options);
   kinds::Source source = kinds::live_source(
       "vectors",
       tools::take(irradiance_vector_volume(options.grid, options.floats), "irradiance vectors"),

@@ -21,8 +21,8 @@ struct CutView {
                             const VolumeGeometry& geometry, const CutView& view,
                             std::span<const Vec3> points);
 
-/// Slots whose brick was another one before: who holds that has to hear of it, wherever it looks,
-/// else it would look light up where nothing is any more.
+/// Slots whose brick was another one before: a client that holds that one has to hear of it,
+/// wherever it looks, else it would look light up where nothing is.
 class ChangedSlots {
  public:
   /// The texture "bricks" of the next frame.

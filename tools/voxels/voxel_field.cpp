@@ -118,7 +118,7 @@ Vec3 VoxelField::at_or_above(const std::array<double, 3>& place, Vec3 normal,
 
 VoxelField::Sum VoxelField::around(const std::array<double, 3>& place, Vec3 normal,
                                    unsigned level) const {
-  constexpr float kLeastWeight = 1e-6F;
+  constexpr float kMinWeight = 1e-6F;
   const std::int64_t cells = std::int64_t{kMaxBrickSide} * shape_.side;
   Sum sum;
   std::array<std::int64_t, 3> first{};
@@ -137,7 +137,7 @@ VoxelField::Sum VoxelField::around(const std::array<double, 3>& place, Vec3 norm
     const std::array<unsigned, 3> step{i & 1, i >> 1 & 1, i >> 2};
     const float w = weight[0][step[0]] * weight[1][step[1]] * weight[2][step[2]];
     Cell cell{};
-    bool inside = w > kLeastWeight;
+    bool inside = w > kMinWeight;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const std::int64_t at = first[axis] + step[axis];
       inside = inside && at >= 0 && at < cells;
@@ -175,8 +175,8 @@ Vec3 VoxelField::Sum::along(Vec3 normal) const {
     light += color[axis] * (share[axis] / weight[axis]);
     shares += share[axis];
   }
-  constexpr float kLeastShare = 1e-6F;
-  return shares > kLeastShare ? light / shares : Vec3{};
+  constexpr float kMinShare = 1e-6F;
+  return shares > kMinShare ? light / shares : Vec3{};
 }
 
 bool VoxelField::exists(std::uint32_t slot, unsigned bit) const {

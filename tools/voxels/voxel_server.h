@@ -32,7 +32,7 @@ class VoxelServer {
   [[nodiscard]] VolumeGeometry geometry() const;
   /// Voxels of all levels; with light after the first update.
   [[nodiscard]] const Octree& octree() const { return octree_; }
-  /// What the last update gives, as a client has it who got all.
+  /// What the last update gives, as a client has it that received all.
   [[nodiscard]] const VoxelField& field() const { return field_; }
   [[nodiscard]] std::uint64_t rays() const { return rays_; }          ///< of the last update
   [[nodiscard]] std::uint64_t left_out() const { return left_out_; }  ///< bricks without a slot

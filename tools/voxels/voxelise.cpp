@@ -12,9 +12,9 @@ namespace {
 
 using Point = std::array<double, 3>;
 
-constexpr double kMostTouched = 16'000'000;  // voxels of level 0, by surface
-constexpr double kWider = 1e-9;              // of a box that stands for smaller ones in it
-constexpr std::size_t kBatch = 64;           // triangles
+constexpr double kMaxTouched = 16'000'000;  // voxels of level 0, by surface
+constexpr double kWider = 1e-9;             // of a box that stands for smaller ones in it
+constexpr std::size_t kBatch = 64;          // triangles
 
 Point minus(const Point& a, const Point& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 Point cross(const Point& a, const Point& b) {
@@ -93,10 +93,10 @@ void unite(std::vector<SurfaceVoxel>& voxels) {
 
 /// Lookups weigh directions by the squares of the normal's coordinates.
 Directions faced_by(Vec3 normal) {
-  constexpr float kLeast = 0.1F;
+  constexpr float kMin = 0.1F;
   Directions faced = 0;
   for (unsigned d = 0; d < kVoxelDirections; ++d) {
-    if (dot(axis_of(d), normal) > kLeast) faced |= static_cast<Directions>(1U << d);
+    if (dot(axis_of(d), normal) > kMin) faced |= static_cast<Directions>(1U << d);
   }
   return faced;
 }
@@ -118,7 +118,7 @@ VoxelGrid::VoxelGrid(const ddgi::Box& box, float size_in) : size(size_in) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     begin[axis] = (std::floor(lo[axis] / size) - kOff) * size;
     const double count = std::floor((hi[axis] - begin[axis]) / size) + 1;
-    if (!(count >= 1 && count <= kMostCells)) too_many(size);
+    if (!(count >= 1 && count <= kMaxCells)) too_many(size);
     cells[axis] = static_cast<std::uint32_t>(count);
   }
   origin = {static_cast<float>(begin[0]), static_cast<float>(begin[1]),
@@ -189,7 +189,7 @@ std::vector<SurfaceVoxel> Voxeliser::touched(std::span<const Facet> facets) cons
     const double sides = double{d.x} * d.y + double{d.y} * d.z + double{d.z} * d.x;
     wanted += std::min(area(t), sides) / (size * size);
   }
-  if (!(wanted <= kMostTouched)) too_many(grid_.size);
+  if (!(wanted <= kMaxTouched)) too_many(grid_.size);
   std::vector<std::vector<SurfaceVoxel>> parts((facets.size() + kBatch - 1) / kBatch);
   pool_.run(parts.size(), [&](std::size_t part) {
     Descent descent(grid_, parts[part]);

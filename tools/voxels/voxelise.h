@@ -21,7 +21,7 @@ using Cell = std::array<std::uint32_t, 3>;
 /// 3·log2(n).
 using VoxelKey = std::uint64_t;
 
-inline constexpr std::uint32_t kMostCells = 1U << 20;  ///< along an axis
+inline constexpr std::uint32_t kMaxCells = 1U << 20;  ///< along an axis
 
 /// Where voxels of level 0 are.
 struct VoxelGrid {

@@ -30,32 +30,21 @@ constexpr std::array kDrawing{
 constexpr std::array<std::string_view, 2> kBricks{"4", "8"};
 constexpr std::array<std::string_view, 2> kForms{"shared-exponent", "halves"};
 
-/// What one source keeps from frame to frame.
-struct Tracer {
-  ddgi::Scene scene;
-  VoxelServer server;
-  std::uint64_t told = 0;  ///< how many bricks were left out
-
-  explicit Tracer(kinds::TraceRequest request)
-      : scene(std::move(request.scene)),
-        server(scene, options_of(request.settings, scene, request.seed), request.threads,
-               std::move(request.cancelled)) {}
-
-  void next(double time, kinds::SourceFrame& frame) {
-    server.update(time);
-    const BrickPool& pool = server.pool();
-    frame.volumes[0].textures = {{pool.bricks().begin(), pool.bricks().end()},
-                                 {pool.light().begin(), pool.light().end()}};
-    const std::uint64_t lost = server.left_out();
-    if (lost > told) {
-      frame.remarks.push_back(
-          fmt::format("voxels: there is no room for {} of the finest bricks of this frame; --set "
-                      "bricks={} holds them, 0 leaves room for more",
-                      lost, std::min<std::uint64_t>(pool.slots() + lost, kMaxBlocks)));
-    }
-    told = std::max(told, lost);
+/// `told`: how many bricks were said to be left out.
+void next(VoxelServer& server, std::uint64_t& told, double time, kinds::SourceFrame& frame) {
+  server.update(time);
+  const BrickPool& pool = server.pool();
+  frame.volumes[0].textures = {{pool.bricks().begin(), pool.bricks().end()},
+                               {pool.light().begin(), pool.light().end()}};
+  const std::uint64_t lost = server.left_out();
+  if (lost > told) {
+    frame.remarks.push_back(
+        fmt::format("voxels: there is no room for {} of the finest bricks of this frame; --set "
+                    "bricks={} holds them, 0 leaves room for more",
+                    lost, std::min<std::uint64_t>(pool.slots() + lost, kMaxBlocks)));
   }
-};
+  told = std::max(told, lost);
+}
 
 /// "91200 of 0.25 m in 2810 bricks" for each level.
 std::string levels(const VoxelServer& server) {
@@ -81,17 +70,18 @@ auto with_memory(const Work& work) {
 }
 
 kinds::Source trace(kinds::TraceRequest request) {
-  const auto tracer =
-      with_memory([&request] { return std::make_shared<Tracer>(std::move(request)); });
+  const VoxelOptions options = options_of(request.settings, request.scene, request.seed);
+  const auto tracer = with_memory(
+      [&] { return std::make_shared<kinds::Tracer<VoxelServer>>(std::move(request), options); });
   const VoxelServer& server = tracer->server;
-  const VoxelOptions& options = server.options();
   kinds::Source source = kinds::live_source(
       "voxels",
       tools::take(voxel_volume(server.pool().slots(), static_cast<std::uint8_t>(options.shape.side),
                                options.form),
                   "voxels"),
-      [tracer](const kinds::SourceRequest& wanted, kinds::SourceFrame& frame) {
-        with_memory([&] { tracer->next(wanted.time, frame); });
+      [tracer, told = std::uint64_t{0}](const kinds::SourceRequest& wanted,
+                                        kinds::SourceFrame& frame) mutable {
+        with_memory([&] { next(tracer->server, told, wanted.time, frame); });
       });
   source.volumes[0].geometry = server.geometry();
   source.remarks.push_back(

@@ -11,12 +11,12 @@
 
 namespace gicodec::streaming {
 
-class Painter {
+class Renderer {
  public:
   /// `scene` may be nullptr, must outlive it. `drawing`: how light is drawn with.
-  Painter(const ddgi::Scene* scene, const ddgi::RenderOptions& options, unsigned threads,
-          PictureFolder pictures, kinds::DrawingFlags drawing);
-  ~Painter();
+  Renderer(const ddgi::Scene* scene, const ddgi::RenderOptions& options, unsigned threads,
+           PictureFolder pictures, kinds::DrawingFlags drawing);
+  ~Renderer();
 
   /// One picture, or one of each texture. Returns the seconds that drawing took, files not counted.
   /// Throws tools::Error, of Exit::bad_input where the first volume cannot be drawn, and

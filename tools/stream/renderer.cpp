@@ -1,4 +1,4 @@
-#include "painter.h"
+#include "renderer.h"
 
 #include "clock.h"
 #include "common/preview_picture.h"
@@ -35,8 +35,8 @@ class Held {
 
 }  // namespace
 
-Painter::Painter(const ddgi::Scene* scene, const ddgi::RenderOptions& options, unsigned threads,
-                 PictureFolder pictures, kinds::DrawingFlags drawing)
+Renderer::Renderer(const ddgi::Scene* scene, const ddgi::RenderOptions& options, unsigned threads,
+                   PictureFolder pictures, kinds::DrawingFlags drawing)
     : scene_(scene),
       options_(options),
       pictures_(std::move(pictures)),
@@ -45,9 +45,9 @@ Painter::Painter(const ddgi::Scene* scene, const ddgi::RenderOptions& options, u
   if (scene_ != nullptr) rays_ = std::make_unique<ddgi::RayScene>(*scene_);
 }
 
-Painter::~Painter() = default;
+Renderer::~Renderer() = default;
 
-double Painter::draw(const ClientFrame& frame, const ddgi::Camera& camera, std::uint32_t number) {
+double Renderer::draw(const ClientFrame& frame, const ddgi::Camera& camera, std::uint32_t number) {
   if (scene_ != nullptr) return draw_scene(frame, camera, number);
   for (const ClientVolume& volume : frame.volumes) {
     for (const ClientTexture& texture : volume.textures) {
@@ -59,8 +59,8 @@ double Painter::draw(const ClientFrame& frame, const ddgi::Camera& camera, std::
   return 0;
 }
 
-double Painter::draw_scene(const ClientFrame& frame, const ddgi::Camera& camera,
-                           std::uint32_t number) {
+double Renderer::draw_scene(const ClientFrame& frame, const ddgi::Camera& camera,
+                            std::uint32_t number) {
   const auto [path, existing] = pictures_.frame(number);  // Before the work.
   const double start = now();
   if (frame.volumes.empty()) fail(Exit::bad_input, "the server has no volume");
@@ -77,7 +77,7 @@ double Painter::draw_scene(const ClientFrame& frame, const ddgi::Camera& camera,
   return seconds;
 }
 
-void Painter::prepare_light(const ClientVolume& volume) {
+void Renderer::prepare_light(const ClientVolume& volume) {
   if (light_ && instance_ == volume.instance) return;
   const Kind* const kind = find_kind(volume.desc.kind);
   const kinds::TracedKind* const row =

@@ -1,6 +1,6 @@
 #include "pixel_light.h"
 
-#include "point_light.h"
+#include "ao/point_light.h"
 
 #include "ddgi/client_renderer.h"
 #include "ddgi/noise.h"

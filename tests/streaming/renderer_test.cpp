@@ -1,6 +1,6 @@
 // Pictures stay in their folder whatever the server calls its textures, and take the place of
 // nothing else.
-#include "stream/painter.h"
+#include "stream/renderer.h"
 #include "dump/error.h"
 
 #include <gicodec/probes.h>
@@ -42,8 +42,8 @@ class Pictures : public testing::Test {
     return frame;
   }
   void draw(const ClientFrame& frame, std::uint32_t number, Existing existing) const {
-    Painter painter(nullptr, {}, 1, PictureFolder(folder_.string(), existing), {});
-    static_cast<void>(painter.draw(frame, {}, number));
+    Renderer renderer(nullptr, {}, 1, PictureFolder(folder_.string(), existing), {});
+    static_cast<void>(renderer.draw(frame, {}, number));
   }
   /// Everything below the parent of the folder.
   [[nodiscard]] std::vector<fs::path> files() const {

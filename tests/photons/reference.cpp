@@ -1,6 +1,6 @@
 #include "reference.h"
 
-#include "emission.h"
+#include "photons/emission.h"
 
 #include "ddgi/lighting.h"
 #include "ddgi/noise.h"
@@ -23,7 +23,7 @@ std::uint32_t seed_of(float x, float y) {
 }  // namespace
 
 Vec3 GatheredLight::irradiance(const ddgi::SeenSurface& seen) const {
-  constexpr std::uint32_t kMostHits = 32;
+  constexpr std::uint32_t kMaxHits = 32;
   constexpr float kSpread = 0.02F;
   const std::uint32_t seed = seed_of(seen.x, seen.y);
   Vec3 sum;
@@ -35,7 +35,7 @@ Vec3 GatheredLight::irradiance(const ddgi::SeenSurface& seen) const {
     Vec3 origin = ddgi::leave(seen.surface, geometric);
     Vec3 weight{1, 1, 1};
     float u = first[0], v = first[1];
-    for (std::uint32_t hits = 0; hits < kMostHits; ++hits) {
+    for (std::uint32_t hits = 0; hits < kMaxHits; ++hits) {
       const Vec3 direction = kinds::cosine_direction(normal, u, v);
       if (ddgi::dot(direction, geometric) <= 0) break;
       const auto surface = scene_.intersect(origin, direction, kSpread);

@@ -1,7 +1,7 @@
 // AO of each pixel: by rays, which is the reference, and in screen space, which is the peer.
 #pragma once
 
-#include "occlusion.h"
+#include "ao/occlusion.h"
 
 #include "ddgi/client_light.h"
 
