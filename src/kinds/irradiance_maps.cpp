@@ -46,33 +46,10 @@ Record blend_record() {
   return record;
 }
 
-/// The first page, how many, of how many bytes, the number of the picture, the pages from its
-/// keyframe on.
-Record frame_record() {
-  using enum ComponentKind;
-  return record_of({{"first", 32, uint},
-                    {"pages", 32, uint},
-                    {"bytes", 32, uint},
-                    {"number", 32, uint},
-                    {"chain", 32, uint}});
-}
-
 Record hash_record() {
   Record record;
   append_components(record, 'h', 2, 32, ComponentKind::opaque);
   return record;
-}
-
-/// A picture's own pages and those before them that it needs: `chain` of them, which end with its
-/// own. Beyond `out` they are only counted, from the picture's own back.
-std::size_t pages_of(std::span<const std::byte> frame, std::span<std::uint32_t> out) {
-  std::array<std::uint32_t, 5> words{};
-  std::memcpy(words.data(), frame.data(), sizeof words);
-  const auto [first, pages, bytes, number, chain] = words;
-  const std::uint32_t count = std::min(std::max(pages, chain), kMaxMapPages);
-  const std::uint32_t end = first + pages;
-  for (std::uint32_t i = 0; i < count && i < out.size(); ++i) out[i] = end - 1 - i;
-  return count;
 }
 
 /// A texture of the map's tiles; the map may end within them.
@@ -121,68 +98,26 @@ BlockSet blend_set(const IrradianceMapDesc& desc) {
   return covered("blend coverage", {"blend", tiled(blend_record(), desc), Threshold::exact});
 }
 
-BlockSet page_set(const IrradianceMapDesc& desc) {
-  TextureDesc bytes = pool_texture(Format::R8_UINT, desc.pages, {64, kMapPageBytes / 64, 1});
-  bytes.presence = Presence::count;
-  BlockSet set;
-  set.textures = {{"page size", pool_texture(Format::R16_UINT, desc.pages, kOne), Threshold::exact},
-                  {"pages", bytes, Threshold::exact}};
-  set.together = true;
-  set.presence = 0;
-  return set;
-}
-
-BlockSet frame_set(const IrradianceMapDesc& desc) {
-  BlockSet set;
-  set.textures = {{"frames", pool_texture(frame_record(), desc.frames, kOne), Threshold::exact}};
-  set.names = 0;
-  set.named = pages_of;
-  return set;
-}
-
-BlockSet coverage_set(const IrradianceMapDesc& desc) {
-  BlockSet set = map_set(desc);
-  set.textures.pop_back();
-  set.together = false;
-  set.presence = BlockSet::kNone;
-  return set;
-}
-
 BlockSet parameterisation_set() {
   BlockSet set;
   set.textures = {{"parameterisation", pool_texture(hash_record(), 1, kOne), Threshold::exact}};
   return set;
 }
 
-bool in_range(std::uint32_t value, bool used, std::uint32_t most) {
-  return used ? value >= 1 && value <= most : value == 0;
-}
-
 bool is_valid(const IrradianceMapDesc& desc) {
-  const bool video = desc.way == MapWay::video;
-  if (video && (desc.width % kMapTile != 0 || desc.height % kMapTile != 0 ||
-                desc.format != Format::A2B10G10R10_UNORM_PACK32)) {
-    return false;
-  }
+  const bool by_bases = desc.way == MapWay::bases;
   return desc.width >= 1 && desc.width <= kMaxMapSide && desc.height >= 1 &&
-         desc.height <= kMaxMapSide && desc.way <= MapWay::video &&
+         desc.height <= kMaxMapSide && desc.way <= MapWay::bases &&
          std::find(kFormats.begin(), kFormats.end(), desc.format) != kFormats.end() &&
-         in_range(desc.bases, desc.way == MapWay::bases, kMaxMapBases) &&
-         in_range(desc.pages, video, kMaxMapPages) && in_range(desc.frames, video, kMaxMapFrames);
+         (desc.bases >= 1) == by_bases && desc.bases <= kMaxMapBases;
 }
 
 VolumeDesc make(const IrradianceMapDesc& desc) {
   VolumeDesc volume{kKindIrradianceMaps, {}};
-  switch (desc.way) {
-    case MapWay::map:
-      volume.sets = {map_set(desc)};
-      break;
-    case MapWay::bases:
-      volume.sets = {coefficient_set(desc), blend_set(desc)};
-      break;
-    case MapWay::video:
-      volume.sets = {page_set(desc), frame_set(desc), coverage_set(desc)};
-      break;
+  if (desc.way == MapWay::bases) {
+    volume.sets = {coefficient_set(desc), blend_set(desc)};
+  } else {
+    volume.sets = {map_set(desc)};
   }
   volume.sets.push_back(parameterisation_set());
   return volume;
@@ -203,17 +138,11 @@ IrradianceMapDesc guess(const VolumeDesc& volume) {
   if (volume.sets.size() == 2) {
     size_by(texture(0, 1));
     desc.format = texture(0, 1).record.format;
-  } else if (volume.sets.size() == 3) {
+  } else {
     desc.way = MapWay::bases;
     size_by(texture(1, 1));
     desc.format = texture(0, 0).record.format;
     desc.bases = texture(0, 0).grid.x * kBlockBases;
-  } else {
-    desc.way = MapWay::video;
-    size_by(texture(2, 0));
-    desc.format = Format::A2B10G10R10_UNORM_PACK32;
-    desc.pages = texture(0, 0).grid.x;
-    desc.frames = texture(1, 0).grid.x;
   }
   return desc;
 }
@@ -228,10 +157,6 @@ Status write(const VolumeDesc& volume, std::vector<std::byte>& out) {
     writer.varint(static_cast<std::uint32_t>(desc->format));
     writer.fixed(static_cast<std::uint8_t>(desc->way));
     if (desc->way == MapWay::bases) writer.varint(desc->bases / kBlockBases);
-    if (desc->way == MapWay::video) {
-      writer.varint(desc->pages);
-      writer.varint(desc->frames);
-    }
     return Status::ok;
   });
 }
@@ -246,10 +171,6 @@ Result<VolumeDesc> read(std::span<const std::byte> description) {
   if (desc.way == MapWay::bases) {
     desc.bases =
         static_cast<std::uint32_t>(reader.varint(kMaxMapBases / kBlockBases)) * kBlockBases;
-  }
-  if (desc.way == MapWay::video) {
-    desc.pages = static_cast<std::uint32_t>(reader.varint(kMaxMapPages));
-    desc.frames = static_cast<std::uint32_t>(reader.varint(kMaxMapFrames));
   }
   if (!reader.ok() || !reader.rest().empty() || !is_valid(desc)) return Status::corrupt;
   return irradiance_map_volume(desc);

@@ -24,8 +24,6 @@ namespace gicodec::tools {
 [[nodiscard]] std::string unknown_kind(const ContainerDescription& description, std::size_t volume);
 /// Whether gi-render draws it, and it is not of probes.
 [[nodiscard]] bool is_drawn_alone(const VolumeEntry& volume) noexcept;
-/// Whether its bytes are those of a video, which is lossy whatever packets are.
-[[nodiscard]] bool is_video(const ContainerDescription& description, const TextureEntry& texture);
 /// Why no dump can be made of a texture, which names its volume, and what can be done with it;
 /// empty if one can.
 [[nodiscard]] std::string no_dump(const ContainerDescription& description,

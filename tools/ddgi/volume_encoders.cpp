@@ -1,5 +1,6 @@
 #include "volume_encoders.h"
 
+#include "common/backend_flags.h"
 #include "dump/block_place.h"
 #include "dump/error.h"
 
@@ -31,12 +32,19 @@ bool differs(const TextureDesc& desc, Texels a, Texels b, std::uint32_t block) {
 }  // namespace
 
 VolumeEncoders::VolumeEncoders(const VolumeDesc& volume, const std::string& backend,
-                               std::string file, std::uint8_t first_texture)
+                               std::string file, std::uint8_t first_texture,
+                               std::span<const int> quantisers)
     : file_(std::move(file)), sets_(volume.sets) {
   for (const BlockSet& set : sets_) {
     for (const NamedTexture& texture : set.textures) {
       EncoderOptions options;
       options.backend = backend;
+      std::unique_ptr<const Backend> lossy;
+      if (encoders_.size() < quantisers.size() && quantisers[encoders_.size()] >= 0) {
+        lossy = tools::lossy_hevc(quantisers[encoders_.size()]);
+        options.backend = lossy->name();
+        options.backends = {lossy.get()};
+      }
       options.gop = 0;  // keyframes would need blocks that did not change
       options.texture_id = static_cast<std::uint8_t>(first_texture + encoders_.size());
       encoders_.push_back(tools::take(Encoder::create(texture.desc, options), file_));

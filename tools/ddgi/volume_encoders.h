@@ -16,10 +16,11 @@ using Texels = std::span<const std::byte>;
 
 class VolumeEncoders {
  public:
-  /// `file`: for messages. `first_texture`: the number of the volume's first texture. Throws
+  /// `file`: for messages. `first_texture`: the number of the volume's first texture. `quantisers`:
+  /// by texture, of HEVC that codes it instead, negative for none; or none at all. Throws
   /// tools::Error.
   VolumeEncoders(const VolumeDesc& volume, const std::string& backend, std::string file,
-                 std::uint8_t first_texture = 0);
+                 std::uint8_t first_texture = 0, std::span<const int> quantisers = {});
 
   /// Packets of what changed, of all textures in order. What changed of a set that travels together
   /// travels in all of it. Throws tools::Error.

@@ -3,6 +3,10 @@
 #include "common/stored_texture.h"
 #include "dump/error.h"
 
+#include <fmt/core.h>
+
+#include <limits>
+
 namespace gicodec::kinds {
 namespace {
 
@@ -14,6 +18,12 @@ ContainerDescription describe(const Source& source, const FrameTimes& times,
     tools::check(add_volume(description, volume.name, volume.desc), path);
     VolumeEntry& entry = description.volumes.back();
     entry.geometry = volume.geometry;
+    for (std::size_t i = 0; i < volume.quantisers.size(); ++i) {
+      if (volume.quantisers[i] < 0) continue;
+      TextureEntry& texture = description.textures[entry.first_texture + i];
+      texture.largest_error = std::numeric_limits<float>::infinity();
+      texture.metadata.emplace_back("lossy", fmt::format("qp={}", volume.quantisers[i]));
+    }
     for (std::size_t i = 0; i < volume.files.size(); ++i) {
       TextureEntry& texture = description.textures[entry.first_texture + i];
       tools::StoredTexture stored;
@@ -34,7 +44,8 @@ SourceContainer::SourceContainer(const std::string& path, const Source& source,
                                  const FrameTimes& times, const std::string& backend)
     : output_(path, describe(source, times, path)) {
   for (const SourceVolume& volume : source.volumes) {
-    encoders_.emplace_back(volume.desc, backend, path, static_cast<std::uint8_t>(sums_.size()));
+    encoders_.emplace_back(volume.desc, backend, path, static_cast<std::uint8_t>(sums_.size()),
+                           volume.quantisers);
     for (const NamedTexture& texture : volume.textures()) sums_.push_back({texture.name, 0});
   }
 }

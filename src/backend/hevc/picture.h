@@ -80,6 +80,13 @@ void raster_to_blocks(const TextureDesc& desc, const FrameShape& shape,
                       std::span<const std::uint32_t> places, std::span<const std::byte> raster,
                       std::span<std::byte> blocks) noexcept;
 
+/// Records of some blocks that do not exist: like the ones before, so that they cost little; and
+/// the other way round, zero.
+void fill_absent(const TextureDesc& desc, std::span<const std::byte> presence,
+                 std::span<std::byte> blocks) noexcept;
+void clear_all_absent(const TextureDesc& desc, std::span<const std::byte> presence,
+                      std::span<std::byte> blocks) noexcept;
+
 /// The alpha bits of the 10-bit formats do not get into the picture and come back as zero. Samples
 /// that no raster leads to (lossy or damaged ones) are clamped. picture_to_raster works in place
 /// and leaves the picture unspecified.
