@@ -86,7 +86,8 @@ void correlate(const Planes<std::uint16_t>& planes) noexcept {
   }
 }
 
-// R, G, B ↔ luma (R + 2G + B) / 4 and chroma (R − B) / 2, (2G − R − B) / 4, each rounded to 10 bits.
+// R, G, B ↔ luma (R + 2G + B) / 4 and chroma (R − B) / 2, (2G − R − B) / 4, each rounded to 10
+// bits.
 void to_luma(const Planes<std::uint16_t>& planes) noexcept {
   for (std::size_t i = 0; i < planes.y.size(); ++i) {
     const int r = planes.y[i], g = planes.u[i], b = planes.v[i];
@@ -145,7 +146,9 @@ Result<FrameShape> frame_shape(const TextureDesc& desc, HevcPacking packing, Hev
   shape.layout = layout;
   shape.size_class = size_class;
   const bool colour = is_a2rgb10(desc.record.format);
-  const std::uint64_t plane_tiles = std::uint64_t{desc.grid.x} * desc.grid.y;
+  // Where blocks continue each other, rows of them stand below one another.
+  const std::uint64_t plane_tiles =
+      desc.model == Model::continuous ? desc.grid.x : std::uint64_t{desc.grid.x} * desc.grid.y;
   std::uint64_t rows = 0;
   if (layout == HevcLayout::packed) {
     if (size_class > size_class_of(desc, block_count(desc))) return Status::corrupt;
@@ -156,7 +159,7 @@ Result<FrameShape> frame_shape(const TextureDesc& desc, HevcPacking packing, Hev
     const std::uint64_t most = kMaxAtlasWidth / row_samples(desc, packing, desc.block.x);
     shape.columns = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(most, 1, plane_tiles));
     shape.row_tiles = static_cast<std::uint32_t>(plane_tiles);
-    rows = desc.grid.z * ((plane_tiles + shape.columns - 1) / shape.columns);
+    rows = block_count(desc) / plane_tiles * ((plane_tiles + shape.columns - 1) / shape.columns);
   }
   const std::uint64_t stacked = packing == HevcPacking::planes && !colour ? desc.record.bytes : 1;
   if (rows * tile_height(desc) * stacked > kMaxHeight) return Status::limit_exceeded;

@@ -58,7 +58,7 @@ struct FrameShape {
   HevcLayout layout{};
   std::uint8_t size_class = 0;          ///< packed: log2 of the tile rows; atlas: 0
   std::uint32_t columns = 0, rows = 0;  ///< tiles
-  std::uint32_t row_tiles = 0;          ///< atlas: tiles of a grid plane z, wrapped at `columns`
+  std::uint32_t row_tiles = 0;          ///< atlas: tiles of a plane or row, wrapped at `columns`
   std::uint32_t width = 0, height = 0;  ///< raster in texels; columns beyond the tiles are zero
   PictureFormat picture;
   friend constexpr bool operator==(const FrameShape&, const FrameShape&) = default;
