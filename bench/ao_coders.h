@@ -2,36 +2,16 @@
 // backends.
 #pragma once
 
-#include "dump/error.h"
-
-#include <gicodec/encoder.h>
-#include <gicodec/kind.h>
+#include "kind_bench.h"
 
 #include <zstd.h>
 
 #include <algorithm>
 #include <cstring>
-#include <memory>
 #include <span>
-#include <string>
 #include <vector>
 
 namespace gicodec::bench {
-
-using Bytes = std::vector<std::byte>;
-
-/// zstd of a level; `strategy` 0 is that of the level.
-inline std::size_t zstd_bytes(const Bytes& input, int level, int strategy) {
-  const std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> context(ZSTD_createCCtx(),
-                                                                     ZSTD_freeCCtx);
-  ZSTD_CCtx_setParameter(context.get(), ZSTD_c_compressionLevel, level);
-  if (strategy != 0) ZSTD_CCtx_setParameter(context.get(), ZSTD_c_strategy, strategy);
-  Bytes out(ZSTD_compressBound(input.size()));
-  const std::size_t size =
-      ZSTD_compress2(context.get(), out.data(), out.size(), input.data(), input.size());
-  if (ZSTD_isError(size) != 0) tools::fail(tools::Exit::internal, "zstd failed");
-  return size;
-}
 
 /// What an update takes, all textures together.
 struct UpdateBytes {
@@ -49,12 +29,9 @@ struct UpdateBytes {
 class AoCoders {
  public:
   AoCoders(const VolumeDesc& volume, const std::string& preset) {
-    EncoderOptions options;
-    options.gop = 0;
-    options.settings.preset = preset;
-    for (const TextureGroup& group : volume.groups) {
-      for (const NamedTexture& texture : group.textures) {
-        encoders_.push_back(tools::take(Encoder::create(texture.desc, options), texture.name));
+    for (const TextureGroup& set : volume.groups) {
+      for (const NamedTexture& texture : set.textures) {
+        encoders_.push_back(make_encoder(texture.desc, preset));
         before_.emplace_back(texture_bytes(texture.desc));
       }
     }
@@ -62,7 +39,7 @@ class AoCoders {
 
   UpdateBytes update(std::span<const Bytes> textures) {
     UpdateBytes sum;
-    Bytes whole, planes;
+    Bytes whole, differences;
     for (std::size_t t = 0; t < textures.size(); ++t) {
       const Bytes& now = textures[t];
       const TextureDesc& desc = encoders_[t].desc();
@@ -77,28 +54,24 @@ class AoCoders {
       if (!dirty.empty()) {
         std::memcpy(&whole[numbers], dirty.data(), dirty.size() * sizeof dirty[0]);
       }
-      Bytes differences;
       for (const std::uint32_t b : dirty) {
-        const std::span<const std::byte> is(&now[b * block], block);
-        append_compacted(is, desc.record.bytes, whole);
-        for (std::size_t i = 0; i < block; ++i) {
-          differences.push_back(
-              static_cast<std::byte>(std::to_integer<unsigned>(is[i]) -
-                                     std::to_integer<unsigned>(before_[t][b * block + i])));
-        }
+        append_compacted({&now[b * block], block}, desc.record.bytes, whole);
       }
+      const Bytes changes =
+          byte_differences(gather(now, block, dirty), gather(before_[t], block, dirty));
       for (std::size_t i = dirty.size(); i-- > 1;) dirty[i] -= dirty[i - 1];
-      const auto steps = std::as_bytes(std::span(dirty));
-      append_planes(steps, 4, planes);
-      append_planes(differences, desc.record.bytes, planes);
+      for (const Bytes& more : {planes(std::as_bytes(std::span(dirty)), sizeof dirty[0]),
+                                planes(changes, desc.record.bytes)}) {
+        differences.insert(differences.end(), more.begin(), more.end());
+      }
       if (!dirty.empty()) {  // Nobody is sent a packet of nothing.
         const std::span<const std::byte> view(now);
         sum.native += tools::take(encoders_[t].encode(view), "native").size();
       }
       before_[t] = now;
     }
-    sum.paper = zstd_bytes(whole, 15, static_cast<int>(ZSTD_lazy));
-    sum.planes = zstd_bytes(planes, 15, 0);
+    sum.paper = zstd_size(whole, 15, static_cast<int>(ZSTD_lazy));
+    sum.planes = zstd_size(differences, 15);
     return sum;
   }
 
@@ -115,12 +88,6 @@ class AoCoders {
     }
     out.resize(out.size() + free);
   }
-  static void append_planes(std::span<const std::byte> records, std::size_t bytes, Bytes& out) {
-    for (std::size_t plane = 0; plane < bytes; ++plane) {
-      for (std::size_t at = plane; at < records.size(); at += bytes) out.push_back(records[at]);
-    }
-  }
-
   std::vector<Encoder> encoders_;
   std::vector<Bytes> before_;
 };

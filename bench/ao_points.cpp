@@ -6,8 +6,6 @@
 #include "ao/point_light.h"
 #include "ao/point_server.h"
 #include "ao/twisting.h"
-#include "common/command_line.h"
-#include "ddgi/picture.h"
 #include "ddgi/scenes.h"
 
 #include <fmt/core.h>
@@ -105,8 +103,7 @@ void write(const Options& options, const std::string& name, std::span<const floa
   if (options.pictures.empty()) return;
   ddgi::Picture out{kWidth, kHeight, {}};
   for (const float v : picture) out.pixels.push_back(Vec3{1, 1, 1} * (v * v));
-  ddgi::write_picture(fmt::format("{}/{}.png", options.pictures, name), out, 1,
-                      tools::Existing::replace);
+  keep_picture(options.pictures, name, out, 1);
 }
 
 struct Quality {
@@ -249,22 +246,13 @@ class Run {
         "{:>7.0f} {:>6.3f} {:>6.3f} {:>8} {:>8} {:>8} {:>6.3f} {:>6} {:>6.1f}\n",
         name_, label, held.points, rate, quality.psnr, quality.ssim, quality_own.psnr,
         mbps(sum.native), mbps(sum.paper), per(sum.paper), per(sum.planes), per(sum.native),
-        static_cast<double>(sum.native) / static_cast<double>(sum.paper),
-        static_cast<double>(sum.native) / static_cast<double>(sum.planes), begin.paper,
-        begin.planes, begin.native,
-        static_cast<double>(begin.native) / static_cast<double>(begin.paper), held.overflow(),
-        per(sum.dirty));
+        ratio(sum.native, sum.paper), ratio(sum.native, sum.planes), begin.paper, begin.planes,
+        begin.native, ratio(begin.native, begin.paper), held.overflow(), per(sum.dirty));
     std::fflush(stdout);
   }
 
   static void hold(const VolumeDesc& volume, std::span<const Bytes> textures, PointLight& light) {
-    std::vector<kinds::HeldTexture> held;
-    for (const TextureGroup& group : volume.groups) {
-      for (const NamedTexture& texture : group.textures) {
-        held.push_back({texture.name, texture.desc, textures[held.size()], {}});
-      }
-    }
-    light.update({volume, {}, held}, 0);
+    light.update({volume, {}, held_of(volume, textures)}, 0);
   }
 
   const Options& options_;
@@ -279,29 +267,7 @@ class Run {
   std::vector<std::vector<float>> references_;
 };
 
-int run(int argc, char** argv) {
-  Options options;
-  tools::Command app{"AO points: bytes and pictures beside those of the paper's coding.",
-                     "ao_points"};
-  app.add_option("scenes", options.scenes, "tomb, villa, street, twist")->show_default();
-  app.add_option("--points", options.points,
-                 "Settings of points; where the largest is too many for --max-points, all are "
-                 "fewer in proportion")
-      ->show_default();
-  app.add_option("--rates", options.rates, "Updates per second")->show_default();
-  app.add_option("--max-points", options.max_points, "")->show_default();
-  app.add_option("--rays", options.rays, "Of a point")->show_default();
-  app.add_option("--reference", options.reference, "Rays of a pixel")->show_default();
-  app.add_option("--threshold", options.threshold, "Of 255")->show_default();
-  app.add_option("--margin", options.margin, "Degrees of the extended view")->show_default();
-  app.add_option("--pictures", options.pictures, "Folder for PNG of the last frame");
-  app.add_option("--preset", options.preset, "Of native; fast has no models for more than 64 MiB")
-      ->show_default();
-  app.add_option("--threads", options.threads, "");
-  app.add_flag("--rays-anew", options.rays_anew, "Other rays in each update");
-  app.add_flag("--all", options.all_seen, "Update points that the camera does not see, too");
-  app.add_flag("--quick", options.quick, "No pictures");
-  if (const auto exit = app.parse(argc, argv)) return static_cast<int>(*exit);
+tools::Exit run(const Options& options) {
   fmt::print(
       "{:<7} {:>5} {:>7} {:>4} {:>6} {:>6} {:>6} {:>7} {:>7} {:>8} {:>8} {:>7} {:>6} {:>6} {:>8} "
       "{:>8} {:>8} {:>6} {:>6} {:>6}\n",
@@ -316,20 +282,34 @@ int run(int argc, char** argv) {
     const double fitting = scene.fitting(most) / most;
     for (const unsigned points : settings) scene.points(points * fitting, points);
   }
-  return 0;
+  return tools::Exit::ok;
 }
 
 }  // namespace
-}  // namespace gicodec::bench
 
-int main(int argc, char** argv) {
-  try {
-    return gicodec::bench::run(argc, argv);
-  } catch (const gicodec::tools::Error& error) {
-    fmt::print(stderr, "ao_points: {}\n", error.what());
-    return static_cast<int>(error.code());
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "ao_points: {}\n", error.what());
-    return 1;
-  }
+void add_ao_points(tools::Command& command, Measurement& chosen) {
+  const auto options = std::make_shared<Options>();
+  command.add_option("scenes", options->scenes, "tomb, villa, street, twist")->show_default();
+  command
+      .add_option("--points", options->points,
+                  "Settings of points; where the largest is too many for --max-points, all are "
+                  "fewer in proportion")
+      ->show_default();
+  command.add_option("--rates", options->rates, "Updates per second")->show_default();
+  command.add_option("--max-points", options->max_points, "")->show_default();
+  command.add_option("--rays", options->rays, "Of a point")->show_default();
+  command.add_option("--reference", options->reference, "Rays of a pixel")->show_default();
+  command.add_option("--threshold", options->threshold, "Of 255")->show_default();
+  command.add_option("--margin", options->margin, "Degrees of the extended view")->show_default();
+  command.add_option("--pictures", options->pictures, "Folder for PNG of the last frame");
+  command
+      .add_option("--preset", options->preset, "Of native; fast has no models for more than 64 MiB")
+      ->show_default();
+  command.add_option("--threads", options->threads, "");
+  command.add_flag("--rays-anew", options->rays_anew, "Other rays in each update");
+  command.add_flag("--all", options->all_seen, "Update points that the camera does not see, too");
+  command.add_flag("--quick", options->quick, "No pictures");
+  choose(command, chosen, options, run);
 }
+
+}  // namespace gicodec::bench

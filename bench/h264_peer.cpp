@@ -18,7 +18,9 @@ void require(bool done, const char* what) {
   if (!done) throw std::runtime_error(std::string("H.264: ") + what + " failed");
 }
 
-constexpr unsigned kShifts[] = {20, 10, 0};  // of planes
+constexpr int kOffset = 512;  // of chroma
+
+std::uint16_t code_of(int value) { return static_cast<std::uint16_t>(std::clamp(value, 0, 1023)); }
 
 }  // namespace
 
@@ -29,7 +31,7 @@ struct H264Peer::Codec {
 };
 
 H264Peer::H264Peer(std::uint32_t width, std::uint32_t height, int qp)
-    : codec_(std::make_unique<Codec>()), decoded_(std::size_t{width} * height) {
+    : codec_(std::make_unique<Codec>()), decoded_(std::size_t{4} * width * height) {
   const AVCodec* const x264 = avcodec_find_encoder_by_name("libx264");
   const AVCodec* const h264 = avcodec_find_decoder(AV_CODEC_ID_H264);
   require(x264 != nullptr && h264 != nullptr, "finding x264");
@@ -63,36 +65,39 @@ H264Peer::H264Peer(std::uint32_t width, std::uint32_t height, int qp)
 H264Peer::H264Peer(H264Peer&&) noexcept = default;
 H264Peer::~H264Peer() = default;
 
-std::size_t H264Peer::add(std::span<const std::uint32_t> picture) {
+std::size_t H264Peer::add(std::span<const std::uint32_t> texels) {
   AVFrame &in = *codec_->in, &out = *codec_->out;
   AVPacket& packet = *codec_->packet;
   require(av_frame_make_writable(&in) == 0, "a picture's memory");
   const auto width = static_cast<std::size_t>(in.width);
-  const auto each = [&](AVFrame& frame, const auto& visit) {
-    for (std::size_t plane = 0; plane < 3; ++plane) {
-      for (std::size_t i = 0; i < picture.size(); ++i) {
-        std::uint8_t* const row =
-            frame.data[plane] + static_cast<std::ptrdiff_t>(i / width) * frame.linesize[plane];
-        visit(kShifts[plane], i, row + 2 * (i % width));
-      }
-    }
+  const auto sample = [&](AVFrame& frame, std::size_t plane, std::size_t i) -> std::uint16_t& {
+    std::uint8_t* const row =
+        frame.data[plane] + static_cast<std::ptrdiff_t>(i / width) * frame.linesize[plane];
+    return reinterpret_cast<std::uint16_t*>(row)[i % width];
   };
-  each(in, [&](unsigned shift, std::size_t i, std::uint8_t* sample) {
-    const auto value = static_cast<std::uint16_t>(picture[i] >> shift & 1023U);
-    std::memcpy(sample, &value, sizeof value);
-  });
+  for (std::size_t i = 0; i < texels.size(); ++i) {
+    const auto channel = [&](unsigned shift) {
+      return static_cast<int>(texels[i] >> shift & 1023);
+    };
+    const int r = channel(0), g = channel(10), b = channel(20);
+    sample(in, 0, i) = code_of((r + 2 * g + b + 2) >> 2);
+    sample(in, 1, i) = code_of(((r - b + 1) >> 1) + kOffset);
+    sample(in, 2, i) = code_of(((2 * g - r - b + 2) >> 2) + kOffset);
+  }
   require(avcodec_send_frame(codec_->encoder.get(), &in) == 0, "coding");
   ++in.pts;
   require(avcodec_receive_packet(codec_->encoder.get(), &packet) == 0, "coding");
   const auto bytes = static_cast<std::size_t>(packet.size);
   require(avcodec_send_packet(codec_->decoder.get(), &packet) == 0, "decoding");
   require(avcodec_receive_frame(codec_->decoder.get(), &out) == 0, "decoding");
-  std::fill(decoded_.begin(), decoded_.end(), 0U);
-  each(out, [&](unsigned shift, std::size_t i, const std::uint8_t* sample) {
-    std::uint16_t value = 0;
-    std::memcpy(&value, sample, sizeof value);
-    decoded_[i] |= std::uint32_t{value} << shift;
-  });
+  for (std::size_t i = 0; i < texels.size(); ++i) {
+    const int y = sample(out, 0, i), co = sample(out, 1, i) - kOffset,
+              cg = sample(out, 2, i) - kOffset;
+    const std::uint32_t texel = static_cast<std::uint32_t>(code_of(y - cg + co)) |
+                                static_cast<std::uint32_t>(code_of(y + cg)) << 10 |
+                                static_cast<std::uint32_t>(code_of(y - cg - co)) << 20;
+    std::memcpy(&decoded_[sizeof texel * i], &texel, sizeof texel);
+  }
   av_packet_unref(&packet);
   av_frame_unref(&out);
   return bytes;

@@ -1,4 +1,4 @@
-// H.264 by x264 through FFmpeg, as Crassin et al. §4.2 send their maps: a peer of maps as video.
+// H.264 by x264 through FFmpeg, as Crassin et al. §4.2 send their maps: a peer of lossy maps.
 #pragma once
 
 #include <cstddef>
@@ -17,14 +17,15 @@ class H264Peer {
   H264Peer(H264Peer&&) noexcept;
   ~H264Peer();
 
-  /// Codes a picture, row by row, luma in the highest ten of 30 bits, and decodes it; its bytes.
-  std::size_t add(std::span<const std::uint32_t> picture);
-  [[nodiscard]] const std::vector<std::uint32_t>& decoded() const { return decoded_; }
+  /// Codes texels of A2B10G10R10, row by row, as luma and chroma (HevcPacking::luma), and decodes
+  /// them; their bytes.
+  std::size_t add(std::span<const std::uint32_t> texels);
+  [[nodiscard]] const std::vector<std::byte>& decoded() const { return decoded_; }
 
  private:
   struct Codec;
   std::unique_ptr<Codec> codec_;
-  std::vector<std::uint32_t> decoded_;
+  std::vector<std::byte> decoded_;  ///< texels
 };
 
 }  // namespace gicodec::bench

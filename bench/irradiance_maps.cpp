@@ -1,32 +1,29 @@
 // Irradiance maps of a scene whose light moves: bytes of each way to stream them beside zstd -19 on
 // byte planes, and how far the pictures are from those of the unclustered map.
-#include "common/program.h"
-#include "ddgi/client_renderer.h"
-#include "ddgi/picture.h"
-#include "ddgi/scenes.h"
 #include "h264_peer.h"
+#include "kind_bench.h"
+
+#include "common/backend_flags.h"
+#include "ddgi/scenes.h"
 #include "maps/maps.h"
 
 #include <gicodec/decoder.h>
-#include <gicodec/encoder.h>
 
 #include <fmt/core.h>
-#include <zstd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+namespace gicodec::bench {
 namespace {
-
-using namespace gicodec;
-using Bytes = std::vector<std::byte>;
 
 struct Flags {
   std::string scene = "villa", pictures;
@@ -37,54 +34,12 @@ struct Flags {
   std::uint32_t reference_rays = 256;
 };
 
-std::size_t zstd_size(const Bytes& bytes) {
-  std::vector<char> out(ZSTD_compressBound(bytes.size()));
-  return ZSTD_compress(out.data(), out.size(), bytes.data(), bytes.size(), 19);
-}
-
 /// The records that exist, one after the other.
 Bytes existing(const Bytes& texture, std::size_t record, std::span<const maps::MapTexel> texels) {
   if (texels.empty()) return texture;
-  Bytes out(texels.size() * record);
-  for (std::size_t i = 0; i < texels.size(); ++i) {
-    std::memcpy(&out[i * record], &texture[texels[i].place * record], record);
-  }
-  return out;
-}
-
-Bytes planes(const Bytes& records, std::size_t record) {
-  Bytes out(records.size());
-  const std::size_t count = records.size() / record;
-  for (std::size_t i = 0; i < records.size(); ++i) {
-    out[i % record * count + i / record] = records[i];
-  }
-  return out;
-}
-
-Bytes exclusive_or(const Bytes& a, const Bytes& b) {
-  Bytes out(a.size());
-  for (std::size_t i = 0; i < a.size(); ++i) out[i] = a[i] ^ b[i];
-  return out;
-}
-
-/// Differences of components, each in its own bits.
-Bytes differences(const Bytes& a, const Bytes& b, const Record& record) {
-  Bytes out(a.size());
-  for (std::size_t at = 0; at < a.size(); at += record.bytes) {
-    for (const Component& component : record.used()) {
-      const std::size_t first = at + component.offset / 32 * 4;
-      const std::size_t bytes = std::min<std::size_t>(4, at + record.bytes - first);
-      std::uint32_t x = 0, y = 0, z = 0;
-      std::memcpy(&x, &a[first], bytes);
-      std::memcpy(&y, &b[first], bytes);
-      std::memcpy(&z, &out[first], bytes);
-      const std::uint32_t shift = component.offset % 32;
-      const std::uint32_t mask = component.bits == 32 ? ~0U : (1U << component.bits) - 1;
-      z |= (((x >> shift) - (y >> shift)) & mask) << shift;
-      std::memcpy(&out[first], &z, bytes);
-    }
-  }
-  return out;
+  std::vector<std::uint32_t> places;
+  for (const maps::MapTexel& texel : texels) places.push_back(texel.place);
+  return gather(texture, record, places);
 }
 
 /// Mean bytes of the updates after the keyframe, and those of that.
@@ -97,11 +52,8 @@ struct Sizes {
 };
 
 Coded code(const TextureDesc& desc, const Bytes& presence, const std::vector<Bytes>& frames,
-           std::string_view preset) {
-  EncoderOptions options;
-  options.gop = 0;
-  options.settings.preset = preset;
-  auto encoder = tools::take(Encoder::create(desc, options), "native");
+           const std::string& preset) {
+  auto encoder = make_encoder(desc, preset);
   auto decoder = tools::take(Decoder::create(desc), "native");
   if (!presence.empty()) {
     tools::check(encoder.set_presence(presence), "native");
@@ -172,22 +124,13 @@ ddgi::Picture picture_of(const Flags& flags, const ddgi::Scene& scene,
   rays.set_state(scene.state_at(time));
   const VolumeDesc volume = tools::take(irradiance_map_volume(desc), "volume");
   maps::MapLight light(rays, volume);
-  std::vector<kinds::HeldTexture> held;
-  for (const TextureGroup& group : volume.groups) {
-    for (const NamedTexture& texture : group.textures) {
-      held.push_back({texture.name, texture.desc, textures[held.size()], {}});
-    }
-  }
-  light.update({volume, {}, held}, time);
+  light.update({volume, {}, held_of(volume, textures)}, time);
   ddgi::ThreadPool pool;
-  ddgi::RenderOptions options;
-  options.width = 480, options.height = 270;
+  ddgi::RenderOptions options = picture_options();
+  options.samples = 2;
   const ddgi::Camera camera = scene.camera_at(time);
   ddgi::Picture picture = ddgi::render(rays, &light, camera, options, pool);
-  if (!flags.pictures.empty()) {
-    ddgi::write_picture(fmt::format("{}/{}-{}.png", flags.pictures, scene.name, name), picture,
-                        camera.exposure, tools::Existing::replace);
-  }
+  keep_picture(flags.pictures, fmt::format("{}-{}", scene.name, name), picture, camera.exposure);
   return picture;
 }
 
@@ -235,8 +178,8 @@ ddgi::Picture report_texels(const Flags& flags, const ddgi::Scene& scene, const 
   return picture_of(flags, scene, server->desc(), server->textures(), "texels");
 }
 
-/// Bytes of the map as video at a quantiser.
-struct VideoSizes {
+/// Bytes of the map with a loss, at a quantiser.
+struct LossySizes {
   int qp;
   double key = 0, updates = 0;
 
@@ -252,17 +195,51 @@ struct VideoSizes {
   }
 };
 
+/// A map's texels with a loss, as a container has them.
 struct Hevc {
-  VideoSizes sizes;
-  maps::VideoEncoder encoder;
+  Hevc(int qp, const TextureDesc& desc, const Bytes& coverage) : sizes{qp} {
+    const auto backend = tools::lossy_hevc(qp);
+    EncoderOptions options;
+    options.backend = backend->name();
+    options.backends = {backend.get()};
+    options.gop = 0;
+    encoder.emplace(tools::take(Encoder::create(desc, options), "HEVC"));
+    tools::check(encoder->set_presence(coverage), "HEVC");
+  }
+  void add(std::uint32_t frame, const Bytes& texels) {
+    const auto packet =
+        tools::take(encoder->encode(ConstTextureView(texels), Selection::all()), "HEVC");
+    sizes.add(frame, packet.size());
+  }
+  [[nodiscard]] Bytes decoded() const {
+    Bytes texels(static_cast<std::size_t>(texture_bytes(encoder->desc())));
+    tools::check(encoder->read(TextureView{texels}), "HEVC");
+    return texels;
+  }
+
+  LossySizes sizes;
+  std::optional<Encoder> encoder;
 };
+
+/// Texels in 10 bits, where nothing is those before.
+std::vector<std::uint32_t> filled(const Bytes& texels, std::span<const maps::MapTexel> exist) {
+  std::vector<std::uint32_t> picture(texels.size() / sizeof(std::uint32_t));
+  std::memcpy(picture.data(), texels.data(), texels.size());
+  std::size_t next = 0;
+  for (std::size_t place = 0; place < picture.size(); ++place) {
+    const bool exists = next < exist.size() && exist[next].place == place;
+    if (exists) ++next;
+    if (!exists && place > 0) picture[place] = picture[place - 1];
+  }
+  return picture;
+}
 
 struct H264 {
-  VideoSizes sizes;
-  bench::H264Peer peer;
+  LossySizes sizes;
+  H264Peer peer;
 };
 
-/// Bases: their coefficients, the map that they give, and that as video; the picture.
+/// Bases: their coefficients, the map that they give, and that with a loss; the picture.
 ddgi::Picture report_bases(const Flags& flags, const ddgi::Scene& scene) {
   const Server server = make_server(flags, scene, {"way=bases"});
   const VolumeDesc volume = tools::take(irradiance_map_volume(server->desc()), "volume");
@@ -271,15 +248,17 @@ ddgi::Picture report_bases(const Flags& flags, const ddgi::Scene& scene) {
   map_desc.bases = 0;
   const VolumeDesc map_volume = tools::take(irradiance_map_volume(map_desc), "volume");
   const maps::TexelCode code(map_desc.format);
-  IrradianceMapDesc video_desc = map_desc;
-  video_desc.way = MapWay::video;
-  video_desc.format = Format::A2B10G10R10_UNORM_PACK32;
-  video_desc.pages = 8192, video_desc.frames = 64;
+  IrradianceMapDesc lossy_desc = map_desc;
+  lossy_desc.format = Format::A2B10G10R10_UNORM_PACK32;
+  const maps::TexelCode lossy_code(lossy_desc.format);
+  const VolumeDesc lossy_volume = tools::take(irradiance_map_volume(lossy_desc), "volume");
   std::vector<Hevc> hevc;
-  for (const int qp : {12, 20, 28}) hevc.push_back({{qp}, maps::VideoEncoder(video_desc, qp)});
+  for (const int qp : {12, 20, 28}) {
+    hevc.emplace_back(qp, lossy_volume.groups[0].textures[1].desc, server->textures()[1]);
+  }
   std::vector<H264> h264;
   for (const int qp : {12, 20, 28, 36}) {
-    h264.push_back({{qp}, bench::H264Peer(map_desc.width, map_desc.height, qp)});
+    h264.push_back({{qp}, H264Peer(map_desc.width, map_desc.height, qp)});
   }
   std::vector<Bytes> coefficients, map_frames;
   double seconds = 0;
@@ -287,12 +266,10 @@ ddgi::Picture report_bases(const Flags& flags, const ddgi::Scene& scene) {
     seconds = update(flags, *server, frame);
     coefficients.push_back(server->textures()[0]);
     map_frames.push_back(texels_of(server->map(), server->texels(), code, server->values()));
-    for (Hevc& one : hevc) {
-      one.encoder.add(server->texels(), server->values());
-      one.sizes.add(frame, one.encoder.last_bytes());
-    }
-    const auto coded = maps::video_picture(server->texels(), server->values());
-    for (H264& one : h264) one.sizes.add(frame, one.peer.add(coded));
+    const Bytes lossy = texels_of(server->map(), server->texels(), lossy_code, server->values());
+    for (Hevc& one : hevc) one.add(frame, lossy);
+    const auto picture = filled(lossy, server->texels());
+    for (H264& one : h264) one.sizes.add(frame, one.peer.add(picture));
   }
   const std::vector<Bytes> textures = server->textures();
   const Bytes& coverage = textures[1];
@@ -316,20 +293,14 @@ ddgi::Picture report_bases(const Flags& flags, const ddgi::Scene& scene) {
   for (const Hevc& one : hevc) {
     one.sizes.print("HEVC", flags.frames);
     compare(flags, scene, picture,
-            picture_of(flags, scene, video_desc,
-                       {one.encoder.sizes, one.encoder.pages, one.encoder.frames, coverage,
-                        textures.back()},
-                       fmt::format("video-{}", one.sizes.qp)),
-            "between bases and the video");
+            picture_of(flags, scene, lossy_desc, {coverage, one.decoded(), textures.back()},
+                       fmt::format("hevc-{}", one.sizes.qp)),
+            "between bases and HEVC");
   }
   for (const H264& one : h264) {
     one.sizes.print("H.264", flags.frames);
-    std::vector<ddgi::Vec3> values(one.peer.decoded().size());
-    std::transform(one.peer.decoded().begin(), one.peer.decoded().end(), values.begin(),
-                   maps::from_video);
     compare(flags, scene, picture,
-            picture_of(flags, scene, map_desc,
-                       {coverage, texels_of(server->map(), texels, code, values), textures.back()},
+            picture_of(flags, scene, lossy_desc, {coverage, one.peer.decoded(), textures.back()},
                        fmt::format("h264-{}", one.sizes.qp)),
             "between bases and H.264");
   }
@@ -360,20 +331,23 @@ tools::Exit run(const Flags& flags) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  tools::Command app{"Measures irradiance maps.", "irradiance_maps"};
-  Flags flags;
-  app.add_option("--scene", flags.scene, "tomb, villa or street")->show_default();
-  app.add_option("--set", flags.set, "Settings of the kind")->type_name("NAME=VALUE")->take_all();
-  app.add_option("--start", flags.start, "Seconds")->show_default();
-  app.add_option("--fps", flags.fps, "Updates per second")->show_default();
-  app.add_option("--frames", flags.frames, "A keyframe and the updates")
+void add_irradiance_maps(tools::Command& command, Measurement& chosen) {
+  const auto options = std::make_shared<Flags>();
+  command.add_option("--scene", options->scene, "tomb, villa or street")->show_default();
+  command.add_option("--set", options->set, "Settings of the kind")
+      ->type_name("NAME=VALUE")
+      ->take_all();
+  command.add_option("--start", options->start, "Seconds")->show_default();
+  command.add_option("--fps", options->fps, "Updates per second")->show_default();
+  command.add_option("--frames", options->frames, "A keyframe and the updates")
       ->allow(tools::in_range(2, 1000))
       ->show_default();
-  app.add_option("--texels", flags.texels, "Side of maps gathered at every texel; 0: none")
+  command.add_option("--texels", options->texels, "Side of maps gathered at every texel; 0: none")
       ->show_default();
-  app.add_option("--reference-rays", flags.reference_rays, "Per texel of the reference")
+  command.add_option("--reference-rays", options->reference_rays, "Per texel of the reference")
       ->show_default();
-  app.add_option("--pictures", flags.pictures, "Folder for pictures")->type_name("DIR");
-  return tools::run_program(app, argc, argv, [&] { return run(flags); });
+  command.add_option("--pictures", options->pictures, "Folder for pictures")->type_name("DIR");
+  choose(command, chosen, options, run);
 }
+
+}  // namespace gicodec::bench

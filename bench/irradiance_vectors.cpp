@@ -1,18 +1,15 @@
 // Irradiance vector grids beside zstd, in bundles and whole, and their pictures as they arrive:
 // what Pacanowski et al. §4.1 and Figures 2, 4 and 6 tell.
-#include "common/command_line.h"
-#include "ddgi/picture.h"
+#include "kind_bench.h"
+
 #include "ddgi/scenes.h"
-#include "dump/error.h"
 #include "session/server/stratified_order.h"
 #include "vectors/vectors.h"
 
 #include <gicodec/decoder.h>
-#include <gicodec/encoder.h>
 #include <gicodec/irradiance_vectors.h>
 
 #include <fmt/core.h>
-#include <zstd.h>
 
 #include <cmath>
 #include <cstdio>
@@ -23,7 +20,6 @@ namespace {
 
 using vectors::VectorLight;
 using vectors::VectorServer;
-using Bytes = std::vector<std::byte>;
 using Vertices = std::vector<std::uint32_t>;
 
 struct Options {
@@ -66,19 +62,10 @@ struct Case {
 /// zstd -19 on byte planes of some vertices, or of their differences to what was before.
 std::size_t zstd_planes(const TextureDesc& desc, const Bytes& texels, const Bytes& before,
                         const Vertices& vertices) {
-  const std::size_t block = block_bytes(desc), size = desc.record.bytes;
-  Bytes planes;
-  for (std::size_t k = 0; k < size; ++k) {
-    for (const std::uint32_t v : vertices) {
-      for (std::size_t at = k; at < block; at += size) {
-        const auto now = std::to_integer<unsigned>(texels[v * block + at]);
-        const auto old = before.empty() ? 0 : std::to_integer<unsigned>(before[v * block + at]);
-        planes.push_back(static_cast<std::byte>(now - old));
-      }
-    }
-  }
-  Bytes out(ZSTD_compressBound(planes.size()));
-  return ZSTD_compress(out.data(), out.size(), planes.data(), planes.size(), 19);
+  const std::size_t block = block_bytes(desc);
+  Bytes some = gather(texels, block, vertices);
+  if (!before.empty()) some = byte_differences(some, gather(before, block, vertices));
+  return zstd_size(planes(some, desc.record.bytes));
 }
 
 /// The corners, then so many vertices each; all at once for 0.
@@ -98,12 +85,6 @@ std::vector<Vertices> bundles_of(const Grid& grid, std::uint32_t size) {
     at = end;
   }
   return bundles;
-}
-
-Encoder make_encoder(const TextureDesc& desc) {
-  EncoderOptions options;
-  options.gop = 0;
-  return tools::take(Encoder::create(desc, options), "encoder");
 }
 
 void print_sizes(const Options& o, const std::string& scene, std::uint32_t vertices, bool floats) {
@@ -131,8 +112,7 @@ void print_sizes(const Options& o, const std::string& scene, std::uint32_t verti
                vertices, floats ? "floats" : "quantised",
                100 * lit / static_cast<double>(block_count(desc)),
                per_slice == 0 ? "whole" : fmt::format("{} a slice", per_slice), packets, native,
-               static_cast<double>(native) / (6 * lit), zstd,
-               static_cast<double>(native) / static_cast<double>(zstd));
+               static_cast<double>(native) / (6 * lit), zstd, ratio(native, zstd));
     std::fflush(stdout);
   }
 }
@@ -165,8 +145,7 @@ void print_updates(const Options& o, const std::string& scene, bool anew) {
   }
   const double each = static_cast<double>(native) / o.updates;
   fmt::print("| {} | {} | {} | {:.0f} | {:.2f} | {} | {:.3f} |\n", scene, anew ? "anew" : "fixed",
-             changed / o.updates, each, each * 10 * 8e-6, zstd / o.updates,
-             static_cast<double>(native) / static_cast<double>(zstd));
+             changed / o.updates, each, each * 10 * 8e-6, zstd / o.updates, ratio(native, zstd));
   std::fflush(stdout);
 }
 
@@ -203,11 +182,7 @@ ddgi::Picture draw(Case& c, const Options& o, const Bytes& texels,
   VectorLight light(volume, options);
   const kinds::HeldTexture held{"vectors", volume.groups[0].textures[0].desc, texels, received};
   light.update({volume, c.server.field().geometry, std::span(&held, 1)}, o.start);
-  ddgi::RenderOptions render;
-  render.width = 480;
-  render.height = 270;
-  render.samples = 1;
-  return ddgi::render(rays, &light, c.scene.camera_at(o.start), render, pool);
+  return ddgi::render(rays, &light, c.scene.camera_at(o.start), picture_options(), pool);
 }
 
 void print_pictures(const Options& o, const std::string& scene) {
@@ -230,10 +205,8 @@ void print_pictures(const Options& o, const std::string& scene) {
           draw(c, o, texels, received, {vectors::Interpolation::trilinear, fill}, pool);
       const double psnr = ddgi::compare(picture, whole, exposure).psnr;
       row += fmt::format("{}{:.1f}", fill == vectors::Fill::none ? "" : " / ", psnr);
-      if (!o.pictures.empty() && fill == vectors::Fill::smooth) {
-        ddgi::write_picture(fmt::format("{}/{}-{}.png", o.pictures, scene, percent), picture,
-                            exposure, tools::Existing::replace);
-      }
+      if (fill == vectors::Fill::smooth)
+        keep_picture(o.pictures, fmt::format("{}-{}", scene, percent), picture, exposure);
     }
     row += " |";
   }
@@ -271,22 +244,15 @@ tools::Exit run(const Options& o) {
 }
 
 }  // namespace
-}  // namespace gicodec::bench
 
-int main(int argc, char** argv) {
-  using namespace gicodec;
-  bench::Options options;
-  tools::Command app{"Sizes and pictures of irradiance vector grids.", "irradiance_vectors"};
-  app.add_option("scenes", options.scenes, "Built-in scenes");
-  app.add_option("--vertices", options.vertices, "Along each side")->show_default();
-  app.add_option("--rays", options.rays, "Per vertex")->show_default();
-  app.add_option("--updates", options.updates, "Updates to measure")->show_default();
-  app.add_option("--pictures", options.pictures, "Folder for pictures as vertices arrive");
-  try {
-    if (const auto exit = app.parse(argc, argv)) return static_cast<int>(*exit);
-    return static_cast<int>(bench::run(options));
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "irradiance_vectors: {}\n", error.what());
-    return 1;
-  }
+void add_irradiance_vectors(tools::Command& command, Measurement& chosen) {
+  const auto options = std::make_shared<Options>();
+  command.add_option("scenes", options->scenes, "Built-in scenes");
+  command.add_option("--vertices", options->vertices, "Along each side")->show_default();
+  command.add_option("--rays", options->rays, "Per vertex")->show_default();
+  command.add_option("--updates", options->updates, "Updates to measure")->show_default();
+  command.add_option("--pictures", options->pictures, "Folder for pictures as vertices arrive");
+  choose(command, chosen, options, run);
 }
+
+}  // namespace gicodec::bench

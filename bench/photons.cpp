@@ -1,20 +1,16 @@
 // Photons (docs/photons.md): bytes of a photon beside other codecs, and what Crassin et al. report
 // in Table 2 for scenes of the tracer.
-//   photons [--pictures] [SETTING=VALUE ...]
-#include "photons/photons.h"
+#include "kind_bench.h"
+
 #include "ddgi/noise.h"
-#include "ddgi/picture.h"
 #include "ddgi/scenes.h"
 #include "dump/error.h"
 #include "photons/held_photons.h"
+#include "photons/photons.h"
 #include "photons/reference.h"
 #include "photons/splatting.h"
 
-#include <gicodec/encoder.h>
-#include <gicodec/volume_encoder.h>
-
 #include <fmt/core.h>
-#include <zstd.h>
 #ifdef GICODEC_HAS_MESHOPTIMIZER
 #include <meshoptimizer.h>
 #endif
@@ -27,29 +23,18 @@
 #include <map>
 #include <optional>
 
-using namespace gicodec;
-using Bytes = std::vector<std::byte>;
+namespace gicodec::bench {
+namespace {
+
 using Clock = std::chrono::steady_clock;
 
-namespace {
+struct Options {
+  std::vector<std::string> settings;
+  std::string pictures;
+};
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-std::size_t zstd_size(std::span<const std::byte> bytes) {
-  Bytes out(ZSTD_compressBound(bytes.size()));
-  return ZSTD_compress(out.data(), out.size(), bytes.data(), bytes.size(), 19);
-}
-
-/// Byte i of all records, then byte i + 1 of all.
-Bytes planes(std::span<const std::byte> records) {
-  const std::size_t count = records.size() / kPhotonBytes;
-  Bytes out(records.size());
-  for (std::size_t i = 0; i < records.size(); ++i) {
-    out[i % kPhotonBytes * count + i / kPhotonBytes] = records[i];
-  }
-  return out;
 }
 
 /// Place along a Hilbert curve (Skilling 2004).
@@ -154,11 +139,11 @@ void add_sizes(Sizes& sizes, Encoder& native, const TextureDesc& desc, std::uint
   ++sizes.batches;
   sizes.photons += count;
   sizes.native += packet->size();
-  sizes.any_order += zstd_size(planes(shuffled(records)));
-  sizes.on_planes += zstd_size(planes(records));
+  sizes.any_order += zstd_size(planes(shuffled(records), kPhotonBytes));
+  sizes.on_planes += zstd_size(planes(records, kPhotonBytes));
   const Bytes sorted = in_hilbert_order(records);
-  sizes.on_deltas += std::min(zstd_size(planes(deltas(desc.record, sorted, true))),
-                              zstd_size(planes(deltas(desc.record, sorted, false))));
+  sizes.on_deltas += std::min(zstd_size(planes(deltas(desc.record, sorted, true), kPhotonBytes)),
+                              zstd_size(planes(deltas(desc.record, sorted, false), kPhotonBytes)));
   sizes.mesh += mesh_size(sorted);
 }
 
@@ -270,12 +255,9 @@ ddgi::Picture sum(ddgi::Picture a, const ddgi::Picture& b) {
 
 /// PSNR of the indirect light alone, and of the whole picture, against what paths gather.
 std::string compare_pictures(const Case& c, const ddgi::Scene& scene, const ddgi::RayScene& rays,
-                             ddgi::ClientLight& light, double time, bool pictures,
+                             ddgi::ClientLight& light, double time, const std::string& pictures,
                              ddgi::ThreadPool& pool) {
-  ddgi::RenderOptions options;
-  options.width = 320;
-  options.height = 180;
-  options.samples = 1;
+  ddgi::RenderOptions options = picture_options(320, 180);
   options.mode = ddgi::RenderMode::gi;
   const ddgi::Camera camera = scene.camera_at(time);
   photons::GatheredLight gathered(rays, 64);
@@ -284,22 +266,16 @@ std::string compare_pictures(const Case& c, const ddgi::Scene& scene, const ddgi
   options.mode = ddgi::RenderMode::direct;
   const auto direct = ddgi::render(rays, nullptr, camera, options, pool);
   const auto whole = sum(drawn, direct), whole_reference = sum(reference, direct);
-  if (pictures) {
-    const auto write = [&](const char* name, const ddgi::Picture& picture) {
-      ddgi::write_picture(fmt::format("{}-{}.png", c.scene, name), picture, camera.exposure,
-                          tools::Existing::replace);
-    };
-    write("indirect", drawn);
-    write("gathered", reference);
-    write("picture", whole);
-  }
+  for (const auto& [name, picture] :
+       {std::pair("indirect", &drawn), {"gathered", &reference}, {"picture", &whole}})
+    keep_picture(pictures, fmt::format("{}-{}", c.scene, name), *picture, camera.exposure);
   return fmt::format("{:.1f} / {:.1f}", ddgi::compare(drawn, reference, camera.exposure).psnr,
                      ddgi::compare(whole, whole_reference, camera.exposure).psnr);
 }
 
-void print_table_2(const Case& c, const std::vector<std::string>& settings, bool pictures) {
+void print_table_2(const Case& c, const Options& o) {
   constexpr unsigned kFrames = 30, kMeasured = 20;
-  const kinds::Source source = source_of(c, settings);
+  const kinds::Source source = source_of(c, o.settings);
   const kinds::SourceVolume& volume = source.volumes[0];
   const ddgi::Scene scene = *ddgi::make_scene(c.scene);
   ddgi::RayScene rays(scene);
@@ -321,11 +297,7 @@ void print_table_2(const Case& c, const std::vector<std::string>& settings, bool
     const std::size_t sent_zstd = bytes_of(tools::take(zstd.encode(views), c.scene));
     rays.set_state(scene.state_at(time));
     latency.look(rays.state(), textures[1]);
-    std::vector<kinds::HeldTexture> held;
-    const auto named = volume.textures();
-    for (std::size_t i = 0; i < named.size(); ++i) {
-      held.push_back({named[i].name, named[i].desc, textures[i], {}});
-    }
+    const auto held = held_of(volume.desc, textures);
     const auto start = Clock::now();
     light->update({volume.desc, volume.geometry, held}, time);
     light->prepare(rays, {scene.camera_at(time), 1280, 720}, pool);
@@ -344,11 +316,7 @@ void print_table_2(const Case& c, const std::vector<std::string>& settings, bool
       batches += emitted != 0;
     }
   }
-  ddgi::RenderOptions options;
-  options.width = 320;
-  options.height = 180;
-  options.samples = 1;
-  const std::string psnr = compare_pictures(c, scene, rays, *light, time, pictures, pool);
+  const std::string psnr = compare_pictures(c, scene, rays, *light, time, o.pictures, pool);
   const double mbps = 8e-6 * c.fps / kMeasured;
   fmt::print(
       "| {} | {} | {} | {:.1f} | {:.1f} | {:.0f} ms | {:.0f} ms | {} dB | {:.1f}, at most {} |\n",
@@ -358,35 +326,36 @@ void print_table_2(const Case& c, const std::vector<std::string>& settings, bool
   std::fflush(stdout);
 }
 
+tools::Exit run(const Options& o) {
+  fmt::print(
+      "Bytes a photon, in brackets native's share of them; batches of 10,000 stored photons and "
+      "more, each by itself.\n\n"
+      "| scene | form | batches | photons | native | zstd -19 on planes, shuffled | zstd -19 on "
+      "planes, in canonical order | zstd -19 on Hilbert deltas | meshoptimizer + zstd -19 |\n"
+      "|---|---|---|---|---|---|---|---|---|\n");
+  for (const Case& c : {Case{"tomb", 6, 10, {"photons=36864"}}, Case{"villa", 40, 10, {}},
+                        Case{"street", 4, 10, {"photons=98304", "per-watt=1"}}}) {
+    for (const char* form : {"Q", "R"}) print_sizes(c, form, o.settings);
+  }
+  fmt::print(
+      "\n10 updates a second.\n\n"
+      "| scene | batches | stored photons | Mbps, native | Mbps, zstd | server, trace | client, "
+      "1280×720 | PSNR, indirect / picture | updates until first photons |\n"
+      "|---|---|---|---|---|---|---|---|---|\n");
+  for (const Case& c :
+       {Case{"tomb", 6, 10, {}}, Case{"villa", 5, 10, {}}, Case{"street", 4, 10, {}}}) {
+    print_table_2(c, o);
+  }
+  return tools::Exit::ok;
+}
+
 }  // namespace
 
-int main(int argc, char** argv) {
-  std::vector<std::string> settings(argv + 1, argv + argc);
-  const bool pictures = !settings.empty() && settings.front() == "--pictures";
-  if (pictures) settings.erase(settings.begin());
-  try {
-    fmt::print(
-        "Bytes a photon, in brackets native's share of them; batches of 10,000 stored photons and "
-        "more, each by itself.\n\n"
-        "| scene | form | batches | photons | native | zstd -19 on planes, shuffled | zstd -19 on "
-        "planes, in canonical order | zstd -19 on Hilbert deltas | meshoptimizer + zstd -19 |\n"
-        "|---|---|---|---|---|---|---|---|---|\n");
-    for (const Case& c : {Case{"tomb", 6, 10, {"photons=36864"}}, Case{"villa", 40, 10, {}},
-                          Case{"street", 4, 10, {"photons=98304", "per-watt=1"}}}) {
-      for (const char* form : {"Q", "R"}) print_sizes(c, form, settings);
-    }
-    fmt::print(
-        "\n10 updates a second.\n\n"
-        "| scene | batches | stored photons | Mbps, native | Mbps, zstd | server, trace | client, "
-        "1280×720 | PSNR, indirect / picture | updates until first photons |\n"
-        "|---|---|---|---|---|---|---|---|---|\n");
-    for (const Case& c :
-         {Case{"tomb", 6, 10, {}}, Case{"villa", 5, 10, {}}, Case{"street", 4, 10, {}}}) {
-      print_table_2(c, settings, pictures);
-    }
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "photons: {}\n", error.what());
-    return 1;
-  }
-  return 0;
+void add_photons(tools::Command& command, Measurement& chosen) {
+  const auto options = std::make_shared<Options>();
+  command.add_option("settings", options->settings, "SETTING=VALUE of the kind");
+  command.add_option("--pictures", options->pictures, "Folder for pictures");
+  choose(command, chosen, options, run);
 }
+
+}  // namespace gicodec::bench

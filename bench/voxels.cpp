@@ -1,20 +1,16 @@
 // Voxels beside zstd and OpenVDB: first transfers, updates, how sizes grow, and pictures as levels
 // arrive. What Crassin et al. §4.1 and Table 2 tell of bandwidth inside of a server.
+#include "kind_bench.h"
 #include "openvdb_peer.h"
 
-#include "common/command_line.h"
-#include "ddgi/picture.h"
 #include "ddgi/scenes.h"
-#include "dump/error.h"
 #include "stream/views.h"
 #include "voxels/cut.h"
 #include "voxels/voxels.h"
 
-#include <gicodec/volume_decoder.h>
-#include <gicodec/volume_encoder.h>
+#include <gicodec/decoder.h>
 
 #include <fmt/core.h>
-#include <zstd.h>
 
 #include <array>
 #include <cstdio>
@@ -24,7 +20,6 @@ namespace gicodec::bench {
 namespace {
 
 using voxels::VoxelServer;
-using Bytes = std::vector<std::byte>;
 
 struct Options {
   std::vector<std::string> scenes{"tomb", "villa", "street"};
@@ -109,31 +104,18 @@ Compact compact(const Case& c) {
 }
 
 std::size_t zstd_planes(const Bytes& records, std::size_t size) {
-  Bytes planes;
-  planes.reserve(records.size());
-  for (std::size_t k = 0; k < size; ++k) {
-    for (std::size_t at = k; at < records.size(); at += size) planes.push_back(records[at]);
-  }
-  Bytes out(ZSTD_compressBound(planes.size()));
-  return ZSTD_compress(out.data(), out.size(), planes.data(), planes.size(), 19);
+  return zstd_size(planes(records, size));
 }
 
-/// By component: of mantissas and exponents modulo their bits; of halves, of their bits.
+/// By component, to what the texture held before at their places.
 Bytes differences(const Case& c, const Compact& now, const Bytes& before) {
-  Bytes out(now.records.size());
-  const TextureDesc& desc = c.desc(1);
-  const std::size_t size = desc.record.bytes, per_voxel = c.voxel_bytes() / size;
-  for (std::size_t i = 0; i < out.size() / size; ++i) {
-    std::uint64_t a = 0, b = 0, difference = 0;
-    std::memcpy(&a, &now.records[i * size], size);
-    std::memcpy(&b, &before[now.at[i / per_voxel] + i % per_voxel * size], size);
-    for (const Component& part : desc.record.used()) {
-      const std::uint64_t most = (std::uint64_t{1} << part.bits) - 1;
-      difference |= (((a >> part.offset) - (b >> part.offset)) & most) << part.offset;
-    }
-    std::memcpy(&out[i * size], &difference, size);
+  Bytes then;
+  then.reserve(now.records.size());
+  for (const std::size_t at : now.at) {
+    const auto one = std::span(before).subspan(at, c.voxel_bytes());
+    then.insert(then.end(), one.begin(), one.end());
   }
-  return out;
+  return bench::differences(now.records, then, c.desc(1).record);
 }
 
 std::size_t openvdb(const Case& c) {
@@ -164,8 +146,10 @@ std::size_t bytes_of(const std::vector<Packet>& packets) {
 class Stream {
  public:
   explicit Stream(const Case& c)
-      : encoder_(tools::take(VolumeEncoder::create(c.volume, {.gop = 0}), "encoder")),
-        decoder_(tools::take(VolumeDecoder::create(c.volume, {.limits = kNoLimits}), "decoder")) {}
+      : bricks_(make_encoder(c.desc(0))),
+        light_(make_encoder(c.desc(1))),
+        held_bricks_(tools::take(Decoder::create(c.desc(0), decoding()), "decoder")),
+        held_light_(tools::take(Decoder::create(c.desc(1), decoding()), "decoder")) {}
 
   /// Bytes of both packets: of all that changed, or what changed of a client's slots, those in the
   /// mask.
@@ -202,13 +186,17 @@ class Stream {
     };
     return !same(0, c.server.pool().bricks()) || !same(1, c.server.pool().light());
   }
-  VolumeEncoder encoder_;
-  VolumeDecoder decoder_;
+  static DecoderOptions decoding() {
+    DecoderOptions options;
+    options.limits.max_texture_bytes = options.limits.max_total_bytes = UINT64_MAX;
+    options.limits.max_packet_bytes = SIZE_MAX;
+    options.limits.max_work_bytes = UINT64_MAX;
+    return options;
+  }
+  Encoder bricks_, light_;
+  Decoder held_bricks_, held_light_;
 };
 
-double ratio(std::size_t a, std::size_t b) {
-  return static_cast<double>(a) / static_cast<double>(b);
-}
 std::size_t bricks_of(const Case& c) {
   const auto counts = brick_counts(c.server.octree(), c.server.pool().shape());
   std::size_t sum = 0;
@@ -318,14 +306,11 @@ void print_pictures(const Options& o, const std::string& scene) {
     const std::array held{kinds::HeldTexture{"bricks", c.desc(0), bricks, received},
                           kinds::HeldTexture{"light", c.desc(1), light, received}};
     client.update({c.volume, c.server.geometry(), held}, o.start);
-    ddgi::RenderOptions render;
-    render.width = 480;
-    render.height = 270;
-    render.samples = 1;
-    return ddgi::render(rays, &client, camera, render, pool);
+    return ddgi::render(rays, &client, camera, picture_options(), pool);
   };
   const ddgi::Picture whole = draw({});
-  auto encoder = tools::take(VolumeEncoder::create(c.volume), "encoder");
+  Encoder places = make_encoder(c.desc(0)), lights = make_encoder(c.desc(1));
+  tools::check(lights.set_presence(bricks), "presence");
   std::vector<std::uint8_t> received(slots);
   std::size_t bytes = 0;
   const std::size_t place = c.server.pool().shape().place_bytes();
@@ -344,10 +329,7 @@ void print_pictures(const Options& o, const std::string& scene) {
                o.size * static_cast<float>(1U << level), bytes,
                ddgi::compare(picture, whole, camera.exposure).psnr);
     std::fflush(stdout);
-    if (!o.pictures.empty()) {
-      ddgi::write_picture(fmt::format("{}/voxels-{}-{}.png", o.pictures, scene, level), picture,
-                          camera.exposure, tools::Existing::replace);
-    }
+    keep_picture(o.pictures, fmt::format("voxels-{}-{}", scene, level), picture, camera.exposure);
   }
 }
 
@@ -405,24 +387,18 @@ tools::Exit run(const Options& o) {
 }
 
 }  // namespace
-}  // namespace gicodec::bench
 
-int main(int argc, char** argv) {
-  using namespace gicodec;
-  bench::Options options;
-  tools::Command app{"Sizes and pictures of voxels.", "voxels"};
-  app.add_option("scenes", options.scenes, "Built-in scenes");
-  app.add_option("--size", options.size, "Of voxels, in metres")->show_default();
-  app.add_option("--sizes", options.sizes, "Scenes and metres that are compared, as tomb:0.25");
-  app.add_option("--rays", options.rays, "Per direction")->show_default();
-  app.add_option("--updates", options.updates, "Updates to measure")->show_default();
-  app.add_option("--tables", options.tables, "Of first, updates, sizes, pictures");
-  app.add_option("--pictures", options.pictures, "Folder for pictures as levels arrive");
-  try {
-    if (const auto exit = app.parse(argc, argv)) return static_cast<int>(*exit);
-    return static_cast<int>(bench::run(options));
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "voxels: {}\n", error.what());
-    return 1;
-  }
+void add_voxels(tools::Command& command, Measurement& chosen) {
+  const auto options = std::make_shared<Options>();
+  command.add_option("scenes", options->scenes, "Built-in scenes");
+  command.add_option("--size", options->size, "Of voxels, in metres")->show_default();
+  command.add_option("--sizes", options->sizes,
+                     "Scenes and metres that are compared, as tomb:0.25");
+  command.add_option("--rays", options->rays, "Per direction")->show_default();
+  command.add_option("--updates", options->updates, "Updates to measure")->show_default();
+  command.add_option("--tables", options->tables, "Of first, updates, sizes, pictures");
+  command.add_option("--pictures", options->pictures, "Folder for pictures as levels arrive");
+  choose(command, chosen, options, run);
 }
+
+}  // namespace gicodec::bench

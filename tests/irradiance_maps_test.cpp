@@ -1,4 +1,4 @@
-// Kind 4: which volumes there are, and what frames of a video name.
+// Kind 4: which volumes there are.
 #include <gicodec/irradiance_maps.h>
 #include <gicodec/irradiance_vectors.h>
 
@@ -21,18 +21,11 @@ RC_GTEST_PROP(IrradianceMaps, AVolumeTellsWhatItWasMadeOf, ()) {
     return *rc::gen::inRange(least, most + 1);
   };
   IrradianceMapDesc desc;
-  desc.way = static_cast<MapWay>(in(0, 2));
+  desc.way = static_cast<MapWay>(in(0, 1));
   desc.width = in(1, kMaxMapSide);
   desc.height = in(1, kMaxMapSide);
   desc.format = kFormats[in(0, 3)];
   if (desc.way == MapWay::bases) desc.bases = in(1, kMaxMapBases);
-  if (desc.way == MapWay::video) {
-    desc.width = (desc.width + kMapTile - 1) / kMapTile * kMapTile;
-    desc.height = (desc.height + kMapTile - 1) / kMapTile * kMapTile;
-    desc.format = Format::A2B10G10R10_UNORM_PACK32;
-    desc.pages = in(1, kMaxMapPages);
-    desc.frames = in(1, kMaxMapFrames);
-  }
   const auto volume = irradiance_map_volume(desc);
   RC_ASSERT(volume.ok());
   const auto again = irradiance_map_desc(*volume);
@@ -53,18 +46,10 @@ TEST(IrradianceMaps, NumbersOutOfRangeAreRefused) {
   EXPECT_TRUE(refused({.width = 0}));
   EXPECT_TRUE(refused({.height = kMaxMapSide + 1}));
   EXPECT_TRUE(refused({.format = Format::R8G8B8A8_UNORM}));
-  EXPECT_TRUE(refused({.way = static_cast<MapWay>(3)}));
+  EXPECT_TRUE(refused({.way = static_cast<MapWay>(2)}));
   EXPECT_TRUE(refused({.bases = 1})) << "a map has none";
   EXPECT_TRUE(refused({.way = MapWay::bases}));
   EXPECT_TRUE(refused({.way = MapWay::bases, .bases = kMaxMapBases + 1}));
-  EXPECT_TRUE(refused({.way = MapWay::bases, .bases = 1, .frames = 1}));
-  const Format codes = Format::A2B10G10R10_UNORM_PACK32;
-  EXPECT_FALSE(refused({.way = MapWay::video, .format = codes, .pages = 1, .frames = 1}));
-  EXPECT_TRUE(refused({.way = MapWay::video, .format = codes, .frames = 1}));
-  EXPECT_TRUE(refused({.way = MapWay::video, .pages = 1, .frames = 1})) << "another format";
-  EXPECT_TRUE(
-      refused({.width = 24, .way = MapWay::video, .format = codes, .pages = 1, .frames = 1}))
-      << "no whole tiles";
 }
 
 TEST(IrradianceMaps, OtherVolumesAreNone) {
@@ -77,37 +62,6 @@ TEST(IrradianceMaps, OtherVolumesAreNone) {
   volume = *irradiance_map_volume({});
   volume.kind = kKindIrradianceVectors;
   EXPECT_EQ(irradiance_map_desc(volume).status(), Status::invalid_description);
-}
-
-/// What a frame of that contents names, at most `room` of it; and how many in all.
-struct Named {
-  std::vector<std::uint32_t> pages;
-  std::size_t count = 0;
-};
-Named named(std::array<std::uint32_t, 5> frame, std::size_t room) {
-  const VolumeDesc volume = *irradiance_map_volume({.way = MapWay::video,
-                                                    .format = Format::A2B10G10R10_UNORM_PACK32,
-                                                    .pages = 100,
-                                                    .frames = 2});
-  Named out;
-  out.pages.assign(room, 12345);
-  out.count = volume.groups[1].dependencies(std::as_bytes(std::span(frame)), out.pages);
-  return out;
-}
-
-TEST(IrradianceMaps, AFrameNamesItsPagesAndThoseBackToItsKeyframe) {
-  const Named two = named({7, 2, 1500, 4, 5}, 8);
-  EXPECT_EQ(two.count, 5U);
-  EXPECT_EQ(two.pages, (std::vector<std::uint32_t>{8, 7, 6, 5, 4, 12345, 12345, 12345}));
-  EXPECT_EQ(named({7, 2, 1500, 4, 2}, 2).pages, (std::vector<std::uint32_t>{8, 7}));
-  EXPECT_EQ(named({0, 0, 0, 0, 0}, 2).count, 0U);
-}
-
-TEST(IrradianceMaps, NamesOfAnyFrameAreBounded) {
-  constexpr std::uint32_t kAll = 0xFFFFFFFFU;
-  const Named many = named({kAll, kAll, kAll, kAll, kAll}, 16);
-  EXPECT_EQ(many.count, kMaxMapPages);
-  EXPECT_EQ(many.pages.size(), 16U);
 }
 
 TEST(IrradianceMaps, DescriptionsOfOtherFormatsAreCorrupt) {

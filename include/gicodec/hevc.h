@@ -13,8 +13,9 @@ namespace GICODEC_API gicodec {
 
 /// How texels become HEVC planes (FORMAT.md, "HEVC payload").
 enum class HevcPacking : std::uint8_t {
-  paper,   ///< colour: 10-bit 4:4:4 planes R,G,B; others: bytes in 8-bit 4:4:4 (YUVY UVYU VYUV)
-  planes,  ///< colour: 12-bit 4:4:4 planes G, R−G, B−G; others: 8-bit 4:0:0 byte planes
+  paper,   ///< colour as 10-bit 4:4:4 planes R,G,B; others as bytes in 8-bit 4:4:4 (YUVY UVYU VYUV)
+  planes,  ///< colour as 12-bit 4:4:4 planes G, R−G, B−G; others as 8-bit 4:0:0 byte planes
+  luma,    ///< lossy colour alone, as 10-bit 4:4:4 luma and chroma: half the bytes of `paper`
 };
 
 /// Which blocks an HEVC frame holds.
@@ -32,8 +33,9 @@ struct HevcSettings {
   /// "libde265" or "ffmpeg".
   std::string decoder = "libde265";
   unsigned decoder_threads = 1;  ///< of the third-party decoder, 1..64
-  /// Quantiser 0..51 for lossy colour; negative: lossless. invalid_settings for any other format,
-  /// and with an encoder other than "x265". Alpha stays exact.
+  /// Quantiser 0..51 for lossy colour; negative for lossless, and invalid_settings with `luma`.
+  /// invalid_settings for any other format and with an encoder other than "x265". Alpha stays
+  /// exact.
   int lossy_qp = -1;
 };
 

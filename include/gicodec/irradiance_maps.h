@@ -16,7 +16,6 @@ inline constexpr std::uint8_t kKindIrradianceMaps = 4;
 enum class MapWay : std::uint8_t {
   map = 0,    ///< its texels
   bases = 1,  ///< coefficients of basis functions, and once how each texel blends up to 8 of them
-  video = 2,  ///< pictures of a video, of which the kind knows only bytes
 };
 
 /// Texels along a side of a tile. A tile says by a mask of 32 bytes which of its texels lie on a
@@ -27,20 +26,15 @@ inline constexpr std::uint32_t kMaxMapSide = 16384;
 inline constexpr std::uint8_t kMapBaseBlock = 8;
 inline constexpr std::uint32_t kMaxMapBases = 65536;
 inline constexpr std::uint32_t kMapBlends = 8;  ///< bases of a texel
-inline constexpr std::uint32_t kMapPageBytes = 1024;
-inline constexpr std::uint32_t kMaxMapPages = 65535;
-inline constexpr std::uint32_t kMaxMapFrames = 1024;
 
 struct IrradianceMapDesc {
-  /// Texels, 1..kMaxMapSide; of a video whole tiles.
+  /// Texels, 1..kMaxMapSide.
   std::uint32_t width = 1024, height = 1024;
   MapWay way = MapWay::map;
   /// Of texels or coefficients: E5B9G9R9_UFLOAT_PACK32, B10G11R11_UFLOAT_PACK32,
-  /// R16G16B16A16_SFLOAT or A2B10G10R10_UNORM_PACK32; of a video the last.
+  /// R16G16B16A16_SFLOAT or A2B10G10R10_UNORM_PACK32.
   Format format = Format::E5B9G9R9_UFLOAT_PACK32;
-  std::uint32_t bases = 0;   ///< MapWay::bases: 1..kMaxMapBases, rounded up to whole blocks
-  std::uint32_t pages = 0;   ///< MapWay::video: 1..kMaxMapPages of kMapPageBytes, a ring
-  std::uint32_t frames = 0;  ///< MapWay::video: 1..kMaxMapFrames pictures, a ring
+  std::uint32_t bases = 0;  ///< MapWay::bases: 1..kMaxMapBases, rounded up to whole blocks
 
   friend bool operator==(const IrradianceMapDesc&, const IrradianceMapDesc&) = default;
 };
@@ -49,9 +43,8 @@ struct IrradianceMapDesc {
 /// - `map`: tiles of "coverage" and "irradiance", together, the latter of texels that are covered;
 /// - `bases`: "coefficients", a pool of blocks of 8×8 bases; then tiles of "blend coverage" and
 ///   "blend", together: of each covered texel the numbers of 8 bases and their weights, of 255;
-/// - `video`: "page size" and "pages", together, a pool; a pool of "frames", of which each names
-///   the pages of its picture and of those back to its keyframe; tiles of "coverage";
-/// - last of all ways, of one block: "parameterisation", the hash of what both ends derive from the
+/// - last of both ways, of one block: "parameterisation", the hash of what both ends derive from
+/// the
 ///   scene.
 /// Their records are in FORMAT.md, "Kinds".
 extern const Kind kIrradianceMaps;

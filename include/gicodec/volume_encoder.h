@@ -29,7 +29,9 @@ struct VolumeEncoderOptions {
   /// EncoderOptions::max_error of each texture, 0 for what says which records exist; empty: nothing
   /// is lost.
   std::vector<float> max_errors = {};
-  std::vector<const Backend*> backends = {};  ///< further ones, needed during create() only
+  std::vector<const Backend*> backends = {};  ///< besides the built-in ones; create() only
+  /// The backend of each texture in place of `backend`, null for none; empty: none of them.
+  std::vector<const Backend*> texture_backends = {};
 };
 
 /// Turns successive contents of a volume of any kind into packets, one of each texture an update:
@@ -48,7 +50,7 @@ struct VolumeEncoderOptions {
 class VolumeEncoder {
  public:
   /// Errors: those of validate() and of Encoder::create(); invalid_argument for a number of
-  /// max_errors that is not that of textures, or more texture ids than 256.
+  /// max_errors or texture_backends that is not that of textures, or more texture ids than 256.
   [[nodiscard]] static Result<VolumeEncoder> create(const VolumeDesc& volume,
                                                     const VolumeEncoderOptions& options = {});
   VolumeEncoder(VolumeEncoder&&) noexcept;

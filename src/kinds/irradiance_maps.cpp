@@ -46,36 +46,13 @@ Record blend_record() {
   return record;
 }
 
-/// A frame: first page, number of pages, bytes of the picture, the picture's number, and pages from
-/// its keyframe's first to its own last.
-Record frame_record() {
-  using enum ComponentKind;
-  return record_of({{"first", 32, uint},
-                    {"pages", 32, uint},
-                    {"bytes", 32, uint},
-                    {"number", 32, uint},
-                    {"chain", 32, uint}});
-}
-
 Record hash_record() {
   Record record;
   append_components(record, 'h', 2, 32, ComponentKind::opaque);
   return record;
 }
 
-/// Dependencies of a picture: its own pages and those before them back to its keyframe, `chain` in
-/// all, from its own back. Pages beyond `out` are only counted.
-std::size_t pages_of(std::span<const std::byte> frame, std::span<std::uint32_t> out) {
-  std::array<std::uint32_t, 5> words{};
-  std::memcpy(words.data(), frame.data(), sizeof words);
-  const auto [first, pages, bytes, number, chain] = words;
-  const std::uint32_t count = std::min(std::max(pages, chain), kMaxMapPages);
-  const std::uint32_t end = first + pages;
-  for (std::uint32_t i = 0; i < count && i < out.size(); ++i) out[i] = end - 1 - i;
-  return count;
-}
-
-/// A texture of the map's tiles; the map may end within the last ones.
+/// A texture of the map's tiles; the map may end within them.
 TextureDesc tiled(const Record& record, const IrradianceMapDesc& desc) {
   TextureDesc map;
   map.record = record;
@@ -121,69 +98,26 @@ TextureGroup blend_set(const IrradianceMapDesc& desc) {
   return covered("blend coverage", {"blend", tiled(blend_record(), desc), Threshold::exact});
 }
 
-TextureGroup page_group(const IrradianceMapDesc& desc) {
-  TextureDesc bytes = pool_texture(Format::R8_UINT, desc.pages, {64, kMapPageBytes / 64, 1});
-  bytes.presence = Presence::count;
-  TextureGroup group;
-  group.textures = {
-      {"page size", pool_texture(Format::R16_UINT, desc.pages, kOne), Threshold::exact},
-      {"pages", bytes, Threshold::exact}};
-  group.bundled = true;
-  group.presence = 0;
-  return group;
-}
-
-TextureGroup frame_set(const IrradianceMapDesc& desc) {
-  TextureGroup group;
-  group.textures = {{"frames", pool_texture(frame_record(), desc.frames, kOne), Threshold::exact}};
-  group.depends_on = 0;
-  group.dependencies = pages_of;
-  return group;
-}
-
-TextureGroup coverage_set(const IrradianceMapDesc& desc) {
-  TextureGroup group = map_set(desc);
-  group.textures.pop_back();
-  group.bundled = false;
-  group.presence = TextureGroup::kNone;
-  return group;
-}
-
 TextureGroup parameterisation_set() {
-  TextureGroup group;
-  group.textures = {{"parameterisation", pool_texture(hash_record(), 1, kOne), Threshold::exact}};
-  return group;
-}
-
-bool in_range(std::uint32_t value, bool used, std::uint32_t most) {
-  return used ? value >= 1 && value <= most : value == 0;
+  TextureGroup set;
+  set.textures = {{"parameterisation", pool_texture(hash_record(), 1, kOne), Threshold::exact}};
+  return set;
 }
 
 bool is_valid(const IrradianceMapDesc& desc) {
-  const bool video = desc.way == MapWay::video;
-  if (video && (desc.width % kMapTile != 0 || desc.height % kMapTile != 0 ||
-                desc.format != Format::A2B10G10R10_UNORM_PACK32)) {
-    return false;
-  }
+  const bool by_bases = desc.way == MapWay::bases;
   return desc.width >= 1 && desc.width <= kMaxMapSide && desc.height >= 1 &&
-         desc.height <= kMaxMapSide && desc.way <= MapWay::video &&
+         desc.height <= kMaxMapSide && desc.way <= MapWay::bases &&
          std::find(kFormats.begin(), kFormats.end(), desc.format) != kFormats.end() &&
-         in_range(desc.bases, desc.way == MapWay::bases, kMaxMapBases) &&
-         in_range(desc.pages, video, kMaxMapPages) && in_range(desc.frames, video, kMaxMapFrames);
+         (desc.bases >= 1) == by_bases && desc.bases <= kMaxMapBases;
 }
 
 VolumeDesc make(const IrradianceMapDesc& desc) {
   VolumeDesc volume{kKindIrradianceMaps, {}};
-  switch (desc.way) {
-    case MapWay::map:
-      volume.groups = {map_set(desc)};
-      break;
-    case MapWay::bases:
-      volume.groups = {coefficient_set(desc), blend_set(desc)};
-      break;
-    case MapWay::video:
-      volume.groups = {page_group(desc), frame_set(desc), coverage_set(desc)};
-      break;
+  if (desc.way == MapWay::bases) {
+    volume.groups = {coefficient_set(desc), blend_set(desc)};
+  } else {
+    volume.groups = {map_set(desc)};
   }
   volume.groups.push_back(parameterisation_set());
   return volume;
@@ -204,17 +138,11 @@ IrradianceMapDesc guess(const VolumeDesc& volume) {
   if (volume.groups.size() == 2) {
     size_by(texture(0, 1));
     desc.format = texture(0, 1).record.format;
-  } else if (volume.groups.size() == 3) {
+  } else {
     desc.way = MapWay::bases;
     size_by(texture(1, 1));
     desc.format = texture(0, 0).record.format;
     desc.bases = texture(0, 0).grid.x * kBlockBases;
-  } else {
-    desc.way = MapWay::video;
-    size_by(texture(2, 0));
-    desc.format = Format::A2B10G10R10_UNORM_PACK32;
-    desc.pages = texture(0, 0).grid.x;
-    desc.frames = texture(1, 0).grid.x;
   }
   return desc;
 }
@@ -229,10 +157,6 @@ Status write(const VolumeDesc& volume, std::vector<std::byte>& out) {
     writer.varint(static_cast<std::uint32_t>(desc->format));
     writer.fixed(static_cast<std::uint8_t>(desc->way));
     if (desc->way == MapWay::bases) writer.varint(desc->bases / kBlockBases);
-    if (desc->way == MapWay::video) {
-      writer.varint(desc->pages);
-      writer.varint(desc->frames);
-    }
     return Status::ok;
   });
 }
@@ -247,10 +171,6 @@ Result<VolumeDesc> read(std::span<const std::byte> description) {
   if (desc.way == MapWay::bases) {
     desc.bases =
         static_cast<std::uint32_t>(reader.varint(kMaxMapBases / kBlockBases)) * kBlockBases;
-  }
-  if (desc.way == MapWay::video) {
-    desc.pages = static_cast<std::uint32_t>(reader.varint(kMaxMapPages));
-    desc.frames = static_cast<std::uint32_t>(reader.varint(kMaxMapFrames));
   }
   if (!reader.ok() || !reader.rest().empty() || !is_valid(desc)) return Status::corrupt;
   return irradiance_map_volume(desc);

@@ -100,24 +100,30 @@ Result<VolumeEncoder> VolumeEncoder::create(const VolumeDesc& volume,
       for (const NamedTexture& texture : group.textures) {
         const std::size_t place = state->textures.size();
         const auto& errors = options.max_errors;
+        const auto& chosen = options.texture_backends;
         if (options.first_texture + place > UINT8_MAX) return Status::invalid_argument;
         if (!errors.empty() && place >= errors.size()) return Status::invalid_argument;
+        if (!chosen.empty() && place >= chosen.size()) return Status::invalid_argument;
+        const Backend* const own = chosen.empty() ? nullptr : chosen[place];
         const float error = errors.empty() ? 0 : errors[place];
         if (error != 0 && &texture - group.textures.data() == group.presence) {
           return Status::invalid_bound;
         }
         auto made = TextureEncoder::create(
-            texture.desc, {.backend = options.backend,
+            texture.desc, {.backend = own == nullptr ? options.backend : own->name(),
                            .settings = options.settings,
                            .gop = options.gop,
                            .texture_id = static_cast<std::uint8_t>(options.first_texture + place),
                            .max_error = error,
-                           .backends = options.backends});
+                           .backends = own == nullptr ? options.backends : std::vector{own}});
         if (!made) return made.status();
         state->textures.push_back(*std::move(made));
       }
     }
-    if (options.max_errors.size() > state->textures.size()) return Status::invalid_argument;
+    const std::size_t count = state->textures.size();
+    if (options.max_errors.size() > count || options.texture_backends.size() > count) {
+      return Status::invalid_argument;
+    }
     return VolumeEncoder(std::move(state));
   });
 }

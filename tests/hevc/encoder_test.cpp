@@ -70,6 +70,7 @@ TEST(HevcEncoder, RefusesBadSettings) {
   EXPECT_EQ(status({}, {.level = 3}), Status::invalid_settings);
   EXPECT_EQ(status({}, {.threads = 0}), Status::invalid_settings);
   EXPECT_EQ(status({.lossy_qp = 52}), Status::invalid_settings);
+  EXPECT_EQ(status({.packing = HevcPacking::luma}), Status::invalid_settings);
   EXPECT_EQ(status({.encoder = "libx265", .lossy_qp = 20}), Status::invalid_settings);
   EXPECT_EQ(status({.lossy_qp = 20}, {}, ddgi_visibility({2, 1, 1})), Status::invalid_settings);
   EXPECT_EQ(status({.decoder = "vlc"}), Status::invalid_settings);
@@ -95,7 +96,7 @@ Update smooth(const TextureDesc& desc, bool keyframe, unsigned shift) {
 
 TEST(HevcLossy, EncoderKnowsWhatIsDecoded) {
   const TextureDesc desc = ddgi_irradiance({6, 2, 2});
-  for (const auto packing : {HevcPacking::paper, HevcPacking::planes}) {
+  for (const auto packing : {HevcPacking::paper, HevcPacking::planes, HevcPacking::luma}) {
     for (const auto layout : {HevcLayout::atlas, HevcLayout::packed}) {
       for (const char* decoder : {"libde265", "ffmpeg"}) {
         Sender sender(desc,

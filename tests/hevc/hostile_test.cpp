@@ -213,7 +213,8 @@ TEST_P(Hostile, HeadsAndAlphaSectionsOutOfForm) {
   EXPECT_EQ(with_byte(1, 0), Status::ok);
   EXPECT_EQ(with_byte(0, 2), Status::unsupported_version);
   EXPECT_EQ(with_byte(1, 4), Status::corrupt);  // Lossy.
-  for (const int bit : {8, 16, 32, 64, 128}) {
+  for (const int luma : {8, 9, 12, 13}) EXPECT_EQ(with_byte(1, luma), Status::corrupt) << luma;
+  for (const int bit : {16, 32, 64, 128}) {
     EXPECT_EQ(with_byte(1, bit), Status::unsupported_feature);
   }
   EXPECT_EQ(with_byte(2, 10), Status::corrupt);  // Bit depth.

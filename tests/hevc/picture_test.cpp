@@ -7,6 +7,7 @@
 #include <rapidcheck/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
 #include <random>
 
@@ -57,6 +58,30 @@ RC_GTEST_PROP(HevcPicture, InverseOfForwardIsIdentity, (std::uint64_t seed)) {
   std::vector<std::byte> blocks_back(blocks.size());
   raster_to_blocks(desc, *shape, places, raster_back, blocks_back);
   RC_ASSERT(blocks_back == blocks);
+}
+
+TEST(HevcPicture, LumaComesBackWithinItsRounding) {
+  const TextureDesc desc = map_texture(Format::A2B10G10R10_UNORM_PACK32, {64, 64, 1}, {16, 16, 1});
+  const auto shape = frame_shape(desc, HevcPacking::luma, HevcLayout::atlas, 0);
+  ASSERT_TRUE(shape.ok());
+  EXPECT_EQ(shape->picture.bit_depth, 10);
+  auto raster = random_bytes(raster_bytes(desc, *shape), 1);
+  const std::uint32_t corners[] = {
+      0, 1023, 1023U << 10, 1023U << 20, 1023U << 20 | 1023, (1U << 30) - 1};
+  std::memcpy(raster.data(), corners, sizeof corners);
+  std::vector<std::byte> back(raster.size());
+  Picture picture;
+  raster_to_picture(best_isa(), desc, *shape, raster, picture);
+  picture_to_raster(best_isa(), desc, *shape, picture, back);
+  for (std::size_t at = 0; at < raster.size(); at += 4) {
+    std::uint32_t was = 0, is = 0;
+    std::memcpy(&was, &raster[at], 4);
+    std::memcpy(&is, &back[at], 4);
+    for (const unsigned shift : {0U, 10U, 20U}) {
+      const int a = static_cast<int>(was >> shift & 1023), b = static_cast<int>(is >> shift & 1023);
+      ASSERT_LE(std::abs(a - b), 2) << at / 4 << " " << shift;
+    }
+  }
 }
 
 // Whatever samples a damaged stream gives, no 10-bit texel has bits outside its codes.

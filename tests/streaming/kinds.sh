@@ -9,7 +9,11 @@ shift 6
 scene=(--gltf "$room")
 traced=("${scene[@]}" --kind "$kind")
 settings=("$@")
-for setting in "$@"; do traced+=(--set "$setting"); done
+streamed=("${traced[@]}")
+for setting in "$@"; do
+  traced+=(--set "$setting")
+  [[ "$setting" == qp=* ]] || streamed+=(--set "$setting")  # of containers alone
+done
 # How clients draw it.
 drawing=()
 [ "$kind" = irradiance_vectors ] && drawing=(--set interpolation=tricubic --set fill=push-pull)
@@ -40,7 +44,7 @@ live() {
   local server culling clients delivery
   culling=()
   [ "$kind" = voxels ] && culling=(--no-culling)
-  serve live "${traced[@]}" "${culling[@]}" --wait 2 --rate 20 --updates 24 --lockstep
+  serve live "${streamed[@]}" "${culling[@]}" --wait 2 --rate 20 --updates 24 --lockstep
   server=$last
   clients=()
   for delivery in unicast shared; do
@@ -62,7 +66,7 @@ live() {
 # Packets are lost and late, and the budget is small: every state is exact all the same.
 lossy() {
   local server relay delivery
-  serve lossy "${traced[@]}" --rate 20 --max-kbps-per-client 4000
+  serve lossy "${streamed[@]}" --rate 20 --max-kbps-per-client 4000
   server=$last
   relay relay "$port" --loss 5 --delay 20 --jitter 10 --seed 7
   relay=$last
@@ -79,7 +83,7 @@ lossy() {
 # No more blocks in an update than a budget has room for, and no fewer as long as some have not come.
 budget() {
   local server
-  serve budget "${traced[@]}" --wait 1
+  serve budget "${streamed[@]}" --wait 1
   server=$last
   start bundles "$bin/gi-client" --connect "127.0.0.1:$port" "${scene[@]}" --subscribe all \
     --budget-blocks 8 --updates 10 --record bundles.gic --expect-proofs
@@ -103,7 +107,7 @@ EOF
 # nobody's view.
 other() {
   local server extreme
-  serve other "${traced[@]}"
+  serve other "${streamed[@]}"
   server=$last
   start extreme "$bad_peer" viewpoints "127.0.0.1:$port"
   extreme=$last
@@ -156,7 +160,11 @@ container() {
   says info "${kind//-/_}"
   case "$kind ${settings[*]}" in
     photons*) says info "room for [0-9]* records a block, of which the first so many exist" ;;
-    *way=video*) says info "lossless, of a video that is LOSSY" ;;
+    *qp=*)
+      says info "hevc.*, LOSSY ("
+      tool 2 served "$bin/gi-server" "${traced[@]}" --updates 1
+      says served "qp is for containers"
+      ;;
   esac
   tool 0 json "$gicodec" info traced.gic --format json
   beside played shown

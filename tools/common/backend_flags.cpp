@@ -73,8 +73,9 @@ void add_backend_flags(Command& command, BackendFlags& flags) {
 #ifdef GICODEC_WITH_HEVC
   command
       .add_option("--hevc-packing", flags.hevc_packing,
-                  "paper: 4:4:4 planes as in the paper; planes: decorrelated, smaller")
-      ->allow(one_of({"paper", "planes"}))
+                  "paper: 4:4:4 planes as in the paper; planes: decorrelated, smaller; luma: with "
+                  "--lossy, smallest")
+      ->allow(one_of({"paper", "planes", "luma"}))
       ->show_default()
       ->group(group);
   command
@@ -124,7 +125,10 @@ HevcSettings hevc_settings_of(const BackendFlags& flags, const TextureDesc& desc
   settings.encoder = flags.hevc_encoder;
   if (!flags.lossy.empty()) {
     const int qp = lossy_qp(flags);
-    if (is_lossy(flags, desc.record)) settings.lossy_qp = qp;
+    if (is_lossy(flags, desc.record)) {
+      settings.lossy_qp = qp;
+      if (flags.hevc_packing == "luma") settings.packing = HevcPacking::luma;
+    }
   }
   return settings;
 }
@@ -152,6 +156,8 @@ void check_own_flags(const BackendFlags& flags) {
       fail(Exit::usage, "--lossy needs --hevc-encoder {}, not {}", none.hevc_encoder,
            flags.hevc_encoder);
     }
+    if (flags.lossy.empty() && flags.hevc_packing == "luma")
+      fail(Exit::usage, "--hevc-packing luma needs --lossy");
     return;
   }
   for (const auto& [flag, given] : {std::pair("--lossy", !flags.lossy.empty()),
@@ -241,6 +247,18 @@ std::unique_ptr<const Backend> hevc_decoder([[maybe_unused]] const DecoderFlags&
   return std::make_unique<HevcOnDemand>(settings);
 #else
   return nullptr;
+#endif
+}
+
+std::unique_ptr<const Backend> lossy_hevc([[maybe_unused]] int quantiser) {
+#ifdef GICODEC_WITH_HEVC
+  load_backend(kBackendHevc);
+  HevcSettings settings;
+  settings.packing = HevcPacking::luma;
+  settings.lossy_qp = quantiser;
+  return std::make_unique<HevcOnDemand>(settings);
+#else
+  fail(Exit::usage, "this program is built without HEVC, which loses bits by a quantiser");
 #endif
 }
 

@@ -58,6 +58,10 @@ void add_decoder_flags(Command& command, DecoderFlags& flags);
 /// none.
 [[nodiscard]] std::unique_ptr<const Backend> hevc_decoder(const DecoderFlags& flags);
 
+/// HEVC that loses bits of 10-bit colour by a quantiser, 0 to 51. Throws Error where this build has
+/// none, or it cannot be loaded.
+[[nodiscard]] std::unique_ptr<const Backend> lossy_hevc(int quantiser);
+
 /// Loads the module of a backend, if it has one. Throws Error if the module is missing.
 void load_backend(std::uint8_t id);
 

@@ -73,13 +73,6 @@ bool is_drawn_alone(const VolumeEntry& volume) noexcept {
   return std::ranges::find(kDrawn, volume.kind) != kDrawn.end();
 }
 
-bool is_video(const ContainerDescription& description, const TextureEntry& texture) {
-  const VolumeEntry& volume = description.volumes[texture.volume];
-  if (volume.kind != kKindIrradianceMaps) return false;
-  const auto map = irradiance_map_desc(volume.desc);
-  return map && map->way == MapWay::video && texture.name == "pages";
-}
-
 std::string unknown_kind(const ContainerDescription& description, std::size_t volume) {
   const std::uint8_t kind = description.volumes[volume].kind;
   if (find_kind(kind) != nullptr) return "";

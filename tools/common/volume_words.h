@@ -24,8 +24,6 @@ namespace gicodec::tools {
 [[nodiscard]] std::string unknown_kind(const ContainerDescription& description, std::size_t volume);
 /// True if gi-render draws the volume and it is not of kind probes.
 [[nodiscard]] bool is_drawn_alone(const VolumeEntry& volume) noexcept;
-/// True if the texture holds a video, which is lossy even in lossless packets.
-[[nodiscard]] bool is_video(const ContainerDescription& description, const TextureEntry& texture);
 /// Why a texture cannot become a dump, with its volume and a hint; empty if it can.
 [[nodiscard]] std::string no_dump(const ContainerDescription& description,
                                   const TextureEntry& texture);

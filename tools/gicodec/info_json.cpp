@@ -114,7 +114,6 @@ Json texture_json(const ContainerReport& report, std::size_t place) {
   Json json = {{"name", texture.name},
                {"volume", entry.volume},
                {"lossy", !texture.lossy.empty()},
-               {"lossy_video", is_video(report.input.description(), entry)},
                {"largest_error", told ? Json(entry.largest_error) : Json(nullptr)},
                {"backends", Json::array()}};
   for (const std::uint8_t id : own.backends) json["backends"].push_back(backend_text(id));

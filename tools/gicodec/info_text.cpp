@@ -167,9 +167,7 @@ void print_texture(const ContainerReport& report, std::size_t place) {
   }
   if (!texture.dropped.empty()) print("  not kept: {}\n", texture.dropped);
   print("  {}, {}\n", backends_text(texture, own),
-        !texture.lossy.empty()                        ? fmt::format("LOSSY ({})", texture.lossy)
-        : is_video(report.input.description(), entry) ? "lossless, of a video that is LOSSY"
-                                                      : "lossless");
+        texture.lossy.empty() ? "lossless" : fmt::format("LOSSY ({})", texture.lossy));
   if (is_known(entry) && desc.presence != Presence::all) {
     print("  room for {} records a block, of which {} exist\n", record_count(desc.block),
           desc.presence == Presence::count ? "the first so many" : "those that a mask selects");

@@ -24,6 +24,9 @@ struct SourceVolume {
   VolumeGeometry geometry;
   VolumeDesc desc;
   std::vector<float> errors = {};  ///< by texture, StreamedTexture::source_error; or none at all
+  /// By texture, the quantiser of HEVC that codes it in containers, negative: it stays lossless; or
+  /// none at all.
+  std::vector<int> quantisers = {};
   /// By texture, what dumps of it say besides scene and time; or none at all.
   std::vector<tools::DumpInfo> files = {};
 

@@ -3,7 +3,6 @@
 #include "dump/error.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstring>
 
@@ -38,9 +37,7 @@ MapLight::MapLight(const ddgi::RayScene& scene, const VolumeDesc& desc)
       code_(desc_.format),
       received_(std::size_t{desc_.width} * desc_.height),
       shown_(received_.size()),
-      exists_(received_.size()) {
-  if (desc_.way == MapWay::video) video_.emplace(desc_);
-}
+      exists_(received_.size()) {}
 
 void MapLight::check_hash(const kinds::HeldTexture& hash) const {
   const auto is_zero = [](std::byte b) { return b == std::byte{0}; };
@@ -77,17 +74,9 @@ void MapLight::take_bases(const kinds::HeldVolume& volume) {
 void MapLight::update(const kinds::HeldVolume& volume, double time) {
   kinds::check_held(volume, own_);
   check_hash(volume.textures.back());
-  constexpr std::array<std::size_t, 3> kCoverage{0, 1, 3};  // by way
-  const std::size_t coverage = kCoverage[static_cast<std::size_t>(desc_.way)];
-  exists_ = existence_of(map_, volume.textures[coverage].texels);
-  if (desc_.way == MapWay::bases) {
-    take_bases(volume);
-  } else if (video_) {
-    const auto& held = volume.textures;
-    video_->update(held[0].texels, held[1].texels, held[2].texels, received_);
-  } else {
-    take_map(volume.textures[1]);
-  }
+  const bool by_bases = desc_.way == MapWay::bases;
+  exists_ = existence_of(map_, volume.textures[by_bases ? 1 : 0].texels);
+  by_bases ? take_bases(volume) : take_map(volume.textures[1]);
   // An exponential average, against popping.
   const bool first = !time_ || !(filter_ > 0) || !(time > *time_);
   const float share = first ? 1 : static_cast<float>(1 - std::exp(-(time - *time_) / filter_));

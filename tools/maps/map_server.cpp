@@ -30,7 +30,6 @@ MapServer::MapServer(const ddgi::Scene& scene, const MapOptions& options, unsign
     options_.desc.bases = (static_cast<std::uint32_t>(bases_.centres.size()) + 63) / 64 * 64;
     blends_ = blends_of(map_, texels_, bases_.blends);
   }
-  if (options_.desc.way == MapWay::video) video_.emplace(options_.desc, options_.qp);
   const std::size_t places = std::size_t{map_.width()} * map_.height();
   values_.resize(places);
   direct_.resize(places);
@@ -41,7 +40,6 @@ void MapServer::update(double time) {
   for (; updates_ < options_.gather.warmup; ++updates_) step(time);
   step(time);
   ++updates_;
-  if (video_) video_->add(texels_, values_);
 }
 
 void MapServer::step(double time) {
@@ -74,7 +72,6 @@ std::vector<std::vector<std::byte>> MapServer::textures() const {
   if (options_.desc.way == MapWay::bases) {
     return {coefficients_of(code_, coefficients_), coverage_, blends_, hash_of(map_)};
   }
-  if (video_) return {video_->sizes, video_->pages, video_->frames, coverage_, hash_of(map_)};
   return {coverage_, texels_of(map_, texels_, code_, values_), hash_of(map_)};
 }
 

@@ -14,22 +14,22 @@ namespace {
 using kinds::Setting;
 
 constexpr std::array kSettings{
-    Setting{"size", "1024", "texels along a side of the map, 16 to 4096; video: a multiple of 16"},
+    Setting{"size", "1024", "texels along a side of the map, 16 to 4096"},
     Setting{"format", "E5B9G9R9_UFLOAT_PACK32",
             "of texels or coefficients: E5B9G9R9_UFLOAT_PACK32, B10G11R11_UFLOAT_PACK32, "
             "R16G16B16A16_SFLOAT, A2B10G10R10_UNORM_PACK32"},
-    Setting{"way", "bases", "what is streamed: map, bases, video"},
+    Setting{"way", "bases", "what is streamed: map, bases"},
     Setting{"gather", "bases", "where light is gathered: texels, bases"},
     Setting{"bases", "30000", "about how many, 1 to 65536"},
     Setting{"spacing", "0", "metres between bases, 0 to 100; 0: by how many they are"},
     Setting{"rays", "0", "per texel or basis, 0 to 65536; 0: 64 per texel, 256 per basis"},
     kinds::rays_turned("1"),
     kinds::kRaysAnew,
-    Setting{"qp", "24", "of video: its quantiser, 0 to 51"},
+    Setting{"qp", "none",
+            "way=map in containers: LOSES BITS, texels in 10 bits by HEVC, quantiser 0 to 51"},
     kinds::kWarmup};
 
-constexpr std::uint32_t kVideoPages = 8192, kVideoFrames = 64;  // of a ring
-constexpr std::array<std::string_view, 3> kWays{"map", "bases", "video"};
+constexpr std::array<std::string_view, 2> kWays{"map", "bases"};
 constexpr std::array<std::string_view, 2> kGathers{"texels", "bases"};
 constexpr std::array<std::string_view, 4> kFormats{"E5B9G9R9_UFLOAT_PACK32",
                                                    "B10G11R11_UFLOAT_PACK32", "R16G16B16A16_SFLOAT",
@@ -53,6 +53,7 @@ kinds::Source trace(kinds::TraceRequest request) {
                         "darker; E5B9G9R9_UFLOAT_PACK32 holds it",
                         server->clipped(), bases ? "bases" : "texels"));
       });
+  if (options.qp >= 0) source.volumes[0].quantisers = {-1, options.qp, -1};
   const Parameterisation& map = server->map();
   source.remarks.push_back(fmt::format(
       "{} charts, {:.2f} texels per metre, {} of {}x{} texels on surfaces", map.rects().size(),
@@ -109,14 +110,12 @@ MapOptions options_of(const kinds::Settings& settings, std::uint32_t seed) {
   options.by_bases = settings.choice("gather", kGathers) == 1;
   if (options.desc.way == MapWay::bases && !options.by_bases)
     tools::fail(tools::Exit::usage, "--set way=bases needs --set gather=bases");
-  if (options.desc.way == MapWay::video) {
-    if (options.desc.width % kMapTile != 0)
-      tools::fail(tools::Exit::usage, "--set size: of a video a multiple of {}", kMapTile);
+  if (settings.text("qp") != "none") {
+    if (options.desc.way != MapWay::map)
+      tools::fail(tools::Exit::usage, "--set qp needs --set way=map");
+    options.qp = static_cast<int>(settings.whole("qp", 0, 51));
     options.desc.format = Format::A2B10G10R10_UNORM_PACK32;
-    options.desc.pages = kVideoPages;
-    options.desc.frames = kVideoFrames;
   }
-  options.qp = static_cast<int>(settings.whole("qp", 0, 51));
   options.bases = settings.whole("bases", 1, kMaxMapBases);
   options.spacing = static_cast<float>(settings.number("spacing", 0, 100));
   options.gather = kinds::gather_options(settings, 0, 65536, seed);

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "map_texels.h"
-#include "video.h"
 
 #include "kinds/traced_kind.h"
 
@@ -26,7 +25,7 @@ struct MapOptions {
   std::uint32_t bases = 0;  ///< of them as many as that
   float spacing = 0;        ///< or so many metres apart; 0: by their number
   ddgi::GatherOptions gather;
-  int qp = 24;  ///< of video
+  int qp = -1;  ///< quantiser of HEVC for its texels; negative: lossless
 };
 [[nodiscard]] MapOptions options_of(const kinds::Settings& settings, std::uint32_t seed);
 
@@ -64,7 +63,6 @@ class MapServer {
   std::vector<Vec3> coefficients_, values_, direct_, lit_;
   std::vector<std::byte> coverage_, blends_;
   std::vector<std::uint8_t> exists_;  ///< by place
-  std::optional<VideoEncoder> video_;
   GatherCount count_;
   std::size_t clipped_ = 0;
   std::uint32_t updates_ = 0;
@@ -96,7 +94,6 @@ class MapLight final : public kinds::VolumeLight {
   VolumeDesc own_;
   Parameterisation map_;
   TexelCode code_;
-  std::optional<VideoDecoder> video_;
   double filter_ = kFilter;
   std::optional<double> time_;
   std::vector<Vec3> received_, shown_;  ///< by place

@@ -1,7 +1,14 @@
 #include "source_container.h"
 
+#include "common/backend_flags.h"
 #include "common/stored_texture.h"
 #include "dump/error.h"
+
+#include <fmt/core.h>
+
+#include <limits>
+#include <memory>
+#include <vector>
 
 namespace gicodec::kinds {
 namespace {
@@ -14,6 +21,12 @@ ContainerDescription describe(const Source& source, const FrameTimes& times,
     tools::check(add_volume(description, volume.name, volume.desc), path);
     VolumeEntry& entry = description.volumes.back();
     entry.geometry = volume.geometry;
+    for (std::size_t i = 0; i < volume.quantisers.size(); ++i) {
+      if (volume.quantisers[i] < 0) continue;
+      TextureEntry& texture = description.textures[entry.first_texture + i];
+      texture.largest_error = std::numeric_limits<float>::infinity();
+      texture.metadata.emplace_back("lossy", fmt::format("qp={}", volume.quantisers[i]));
+    }
     for (std::size_t i = 0; i < volume.files.size(); ++i) {
       TextureEntry& texture = description.textures[entry.first_texture + i];
       tools::StoredTexture stored;
@@ -38,6 +51,11 @@ SourceContainer::SourceContainer(const std::string& path, const Source& source,
     options.backend = backend;
     options.gop = 0;  // keyframes would need blocks that did not change
     options.first_texture = static_cast<std::uint8_t>(sums_.size());
+    std::vector<std::unique_ptr<const Backend>> lossy;
+    for (const int quantiser : volume.quantisers) {
+      lossy.push_back(quantiser < 0 ? nullptr : tools::lossy_hevc(quantiser));
+      options.texture_backends.push_back(lossy.back().get());
+    }
     encoders_.push_back(tools::take(VolumeEncoder::create(volume.desc, options), path));
     for (const NamedTexture& texture : volume.textures()) sums_.push_back({texture.name, 0});
   }

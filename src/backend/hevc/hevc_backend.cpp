@@ -38,7 +38,6 @@ Result<std::unique_ptr<hevc::SessionEncoder>> open_session(const TextureDesc& de
                                                            const HevcSettings& settings,
                                                            const BackendSettings& common) {
   if (const Status status = validate(desc); status != Status::ok) return status;
-  if (desc.presence != Presence::all) return Status::unsupported_shape;
   auto encoders = ffmpeg_encoders(settings.encoder);
   const auto decoder = decoder_kind(settings.decoder);
   const bool lossy = settings.lossy_qp >= 0;
@@ -49,6 +48,7 @@ Result<std::unique_ptr<hevc::SessionEncoder>> open_session(const TextureDesc& de
   }
   if (lossy && (!is_a2rgb10(desc.record.format) || !encoders->empty()))
     return Status::invalid_settings;
+  if (settings.packing == HevcPacking::luma && !lossy) return Status::invalid_settings;
   const std::uint8_t largest_class = settings.layout == HevcLayout::packed
                                          ? hevc::size_class_of(desc, block_count(desc))
                                          : std::uint8_t{0};
@@ -81,7 +81,6 @@ Result<std::unique_ptr<BackendEncoder>> HevcBackend::make_encoder(
 Result<std::unique_ptr<BackendDecoder>> HevcBackend::make_decoder(const TextureDesc& desc) const {
   return guarded([&]() -> Result<std::unique_ptr<BackendDecoder>> {
     if (const Status status = validate(desc); status != Status::ok) return status;
-    if (desc.presence != Presence::all) return Status::unsupported_shape;
     const auto kind = decoder_kind(settings_.decoder);
     if (!kind || settings_.decoder_threads < 1 || settings_.decoder_threads > kMaxCodecThreads) {
       return Status::invalid_settings;

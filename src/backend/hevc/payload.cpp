@@ -9,8 +9,8 @@
 namespace gicodec::hevc {
 namespace {
 
-constexpr std::uint8_t kPackingPlanes = 1, kLayoutPacked = 2, kLossy = 4;
-constexpr std::uint8_t kKnownFlags = kPackingPlanes | kLayoutPacked | kLossy;
+constexpr std::uint8_t kPackingPlanes = 1, kLayoutPacked = 2, kLossy = 4, kPackingLuma = 8;
+constexpr std::uint8_t kKnownFlags = kPackingPlanes | kLayoutPacked | kLossy | kPackingLuma;
 constexpr std::size_t kHeadBytes = 9;
 constexpr std::size_t kParameterSetBytes = 4096;
 constexpr int kAlphaLevel = 3;  // zstd's default
@@ -35,6 +35,7 @@ void write_payload(const PayloadHead& head, std::span<const std::byte> alpha_sec
                    std::span<const std::byte> access_unit, std::vector<std::byte>& out) {
   unsigned flags = 0;
   if (head.packing == HevcPacking::planes) flags |= kPackingPlanes;
+  if (head.packing == HevcPacking::luma) flags |= kPackingLuma;
   if (head.layout == HevcLayout::packed) flags |= kLayoutPacked;
   if (head.lossy) flags |= kLossy;
   ByteWriter writer(out);
@@ -59,9 +60,14 @@ Result<Payload> read_payload(std::span<const std::byte> bytes) noexcept {
   if ((flags & ~kKnownFlags) != 0) return Status::unsupported_feature;
   Payload payload;
   PayloadHead& head = payload.head;
-  head.packing = (flags & kPackingPlanes) != 0 ? HevcPacking::planes : HevcPacking::paper;
+  head.packing = (flags & kPackingPlanes) != 0 ? HevcPacking::planes
+                 : (flags & kPackingLuma) != 0 ? HevcPacking::luma
+                                               : HevcPacking::paper;
   head.layout = (flags & kLayoutPacked) != 0 ? HevcLayout::packed : HevcLayout::atlas;
   head.lossy = (flags & kLossy) != 0;
+  // Luma is of what is lossy alone.
+  if ((flags & kPackingLuma) != 0 && (!head.lossy || head.packing != HevcPacking::luma))
+    return Status::corrupt;
   head.bit_depth = reader.fixed<std::uint8_t>();
   head.size_class = reader.fixed<std::uint8_t>();
   head.alpha = reader.fixed<std::uint8_t>();

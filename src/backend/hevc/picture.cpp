@@ -1,5 +1,6 @@
 #include "backend/hevc/picture.h"
 
+#include "texture/presence.h"
 #include "transform/byte_planes.h"
 #include "transform/yuv444p16.h"
 #include "transform/yuv444p8.h"
@@ -17,7 +18,7 @@ std::uint32_t tile_height(const TextureDesc& desc) noexcept {
 
 // Width of a packed picture in texels, narrow so that small updates stay small.
 constexpr std::uint32_t kPackedWidth = 256;
-constexpr int kDifferenceOffset = 1024;
+constexpr int kDifferenceOffset = 1024, kChromaOffset = 512;
 constexpr int kMaxCode = 1023;
 
 constexpr std::uint32_t side(std::uint64_t samples, std::uint32_t least) noexcept {
@@ -63,7 +64,11 @@ auto samples_of(std::span<Byte> bytes) noexcept {
   return std::span(reinterpret_cast<Sample*>(bytes.data()), bytes.size() / sizeof(Sample));
 }
 
-// The reversible colour transform R, G, B → G, R−G, B−G in 12 bit.
+std::uint16_t code_of(int value) noexcept {
+  return static_cast<std::uint16_t>(std::clamp(value, 0, kMaxCode));
+}
+
+// R, G, B → G, R−G, B−G in 12 bit; a reversible colour transform.
 void decorrelate(const Planes<std::uint16_t>& planes) noexcept {
   for (std::size_t i = 0; i < planes.y.size(); ++i) {
     const int r = planes.y[i], g = planes.u[i], b = planes.v[i];
@@ -73,14 +78,30 @@ void decorrelate(const Planes<std::uint16_t>& planes) noexcept {
   }
 }
 void correlate(const Planes<std::uint16_t>& planes) noexcept {
-  const auto code = [](int value) {
-    return static_cast<std::uint16_t>(std::clamp(value, 0, kMaxCode));
-  };
   for (std::size_t i = 0; i < planes.y.size(); ++i) {
     const int g = planes.y[i];
-    planes.y[i] = code(g + planes.u[i] - kDifferenceOffset);
-    planes.u[i] = code(g);
-    planes.v[i] = code(g + planes.v[i] - kDifferenceOffset);
+    planes.y[i] = code_of(g + planes.u[i] - kDifferenceOffset);
+    planes.u[i] = code_of(g);
+    planes.v[i] = code_of(g + planes.v[i] - kDifferenceOffset);
+  }
+}
+
+// R, G, B ↔ luma (R + 2G + B) / 4 and chroma (R − B) / 2, (2G − R − B) / 4, each rounded to 10
+// bits.
+void to_luma(const Planes<std::uint16_t>& planes) noexcept {
+  for (std::size_t i = 0; i < planes.y.size(); ++i) {
+    const int r = planes.y[i], g = planes.u[i], b = planes.v[i];
+    planes.y[i] = code_of((r + 2 * g + b + 2) >> 2);
+    planes.u[i] = code_of(((r - b + 1) >> 1) + kChromaOffset);
+    planes.v[i] = code_of(((2 * g - r - b + 2) >> 2) + kChromaOffset);
+  }
+}
+void from_luma(const Planes<std::uint16_t>& planes) noexcept {
+  for (std::size_t i = 0; i < planes.y.size(); ++i) {
+    const int y = planes.y[i], co = planes.u[i] - kChromaOffset, cg = planes.v[i] - kChromaOffset;
+    planes.y[i] = code_of(y - cg + co);
+    planes.u[i] = code_of(y + cg);
+    planes.v[i] = code_of(y - cg - co);
   }
 }
 
@@ -97,13 +118,15 @@ void colour_to_picture(Isa isa, Format format, const FrameShape& shape,
   const auto planes = colour_planes(shape, picture);
   to_yuv444p16(isa, format, SampleAlignment::low, raster, planes);
   if (shape.packing == HevcPacking::planes) decorrelate(planes);
+  if (shape.packing == HevcPacking::luma) to_luma(planes);
 }
 
 void picture_to_colour(Isa isa, Format format, const FrameShape& shape, Picture& picture,
                        std::span<std::byte> raster) {
   const auto planes = colour_planes(shape, picture);
   if (shape.packing == HevcPacking::planes) correlate(planes);
-  // Cannot fail: codes have at most 10 bits, in the paper's planes by their bit depth.
+  if (shape.packing == HevcPacking::luma) from_luma(planes);
+  // Codes have no more than 10 bits here: those of the paper's planes by their bit depth.
   static_cast<void>(
       from_yuv444p16(isa, format, SampleAlignment::low, {planes.y, planes.u, planes.v}, raster));
 }
@@ -123,7 +146,9 @@ Result<FrameShape> frame_shape(const TextureDesc& desc, HevcPacking packing, Hev
   shape.layout = layout;
   shape.size_class = size_class;
   const bool colour = is_a2rgb10(desc.record.format);
-  const std::uint64_t plane_tiles = std::uint64_t{desc.grid.x} * desc.grid.y;
+  // Where blocks continue each other, rows of them stand below one another.
+  const std::uint64_t plane_tiles =
+      desc.model == Model::continuous ? desc.grid.x : std::uint64_t{desc.grid.x} * desc.grid.y;
   std::uint64_t rows = 0;
   if (layout == HevcLayout::packed) {
     if (size_class > size_class_of(desc, block_count(desc))) return Status::corrupt;
@@ -134,7 +159,7 @@ Result<FrameShape> frame_shape(const TextureDesc& desc, HevcPacking packing, Hev
     const std::uint64_t most = kMaxAtlasWidth / row_samples(desc, packing, desc.block.x);
     shape.columns = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(most, 1, plane_tiles));
     shape.row_tiles = static_cast<std::uint32_t>(plane_tiles);
-    rows = desc.grid.z * ((plane_tiles + shape.columns - 1) / shape.columns);
+    rows = block_count(desc) / plane_tiles * ((plane_tiles + shape.columns - 1) / shape.columns);
   }
   const std::uint64_t stacked = packing == HevcPacking::planes && !colour ? desc.record.bytes : 1;
   if (rows * tile_height(desc) * stacked > kMaxHeight) return Status::limit_exceeded;
@@ -143,7 +168,7 @@ Result<FrameShape> frame_shape(const TextureDesc& desc, HevcPacking packing, Hev
   shape.height = shape.rows * tile_height(desc);
   shape.picture.width = side(row_samples(desc, packing, shape.width), kMinWidth);
   shape.picture.height = side(shape.height * stacked, kMinHeight);
-  shape.picture.bit_depth = !colour ? 8 : packing == HevcPacking::paper ? 10 : 12;
+  shape.picture.bit_depth = !colour ? 8 : packing == HevcPacking::planes ? 12 : 10;
   shape.picture.monochrome = stacked > 1;
   if (std::uint64_t{shape.picture.width} * shape.picture.height > kMaxSamples) {
     return Status::limit_exceeded;
@@ -171,6 +196,44 @@ void raster_to_blocks(const TextureDesc& desc, const FrameShape& shape,
   for_each_row(desc, shape, places, [&](std::size_t block, std::size_t place, std::size_t bytes) {
     std::memcpy(&blocks[block], &raster[place], bytes);
   });
+}
+
+namespace {
+
+/// visit(block's records, its presence).
+template <typename Visit>
+void for_each_block(const TextureDesc& desc, std::span<const std::byte> presence,
+                    std::span<std::byte> blocks, const Visit& visit) noexcept {
+  const std::size_t bytes = block_bytes(desc), of_presence = presence_bytes(desc);
+  if (of_presence == 0) return;
+  for (std::size_t at = 0, from = 0; at < blocks.size(); at += bytes, from += of_presence) {
+    visit(blocks.subspan(at, bytes), presence.subspan(from, of_presence));
+  }
+}
+
+}  // namespace
+
+void fill_absent(const TextureDesc& desc, std::span<const std::byte> presence,
+                 std::span<std::byte> blocks) noexcept {
+  const std::size_t bytes = desc.record.bytes;
+  const std::byte* last = nullptr;
+  for_each_block(desc, presence, blocks, [&](auto block, auto bits) {
+    const BlockPresence present(desc, bits);
+    for (std::uint32_t r = 0; r < record_count(desc.block); ++r) {
+      std::byte* const record = &block[r * bytes];
+      if (present.exists(r)) {
+        last = record;
+      } else if (last != nullptr) {
+        std::memcpy(record, last, bytes);
+      }
+    }
+  });
+}
+
+void clear_all_absent(const TextureDesc& desc, std::span<const std::byte> presence,
+                      std::span<std::byte> blocks) noexcept {
+  for_each_block(desc, presence, blocks,
+                 [&](auto block, auto bits) { clear_absent(desc, bits, block); });
 }
 
 void raster_to_picture(Isa isa, const TextureDesc& desc, const FrameShape& shape,

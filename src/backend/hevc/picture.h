@@ -58,8 +58,8 @@ struct FrameShape {
   HevcLayout layout{};
   std::uint8_t size_class = 0;          ///< packed: log2 of the tile rows; atlas: 0
   std::uint32_t columns = 0, rows = 0;  ///< tiles
-  std::uint32_t row_tiles = 0;          ///< atlas: tiles of a grid plane z, wrapped at `columns`
-  std::uint32_t width = 0, height = 0;  ///< raster, in texels; columns beyond the tiles are zero
+  std::uint32_t row_tiles = 0;          ///< atlas: tiles of a plane or row, wrapped at `columns`
+  std::uint32_t width = 0, height = 0;  ///< raster in texels; columns beyond the tiles are zero
   PictureFormat picture;
   friend constexpr bool operator==(const FrameShape&, const FrameShape&) = default;
 };
@@ -80,9 +80,16 @@ void raster_to_blocks(const TextureDesc& desc, const FrameShape& shape,
                       std::span<const std::uint32_t> places, std::span<const std::byte> raster,
                       std::span<std::byte> blocks) noexcept;
 
-/// Alpha of the 10-bit formats is not in the picture and comes back as zero. Samples that no raster
-/// gives (lossy or damaged ones) are clamped. picture_to_raster() works in place and leaves the
-/// picture unspecified.
+/// Records of some blocks that do not exist: like the ones before, so that they cost little; and
+/// the other way round, zero.
+void fill_absent(const TextureDesc& desc, std::span<const std::byte> presence,
+                 std::span<std::byte> blocks) noexcept;
+void clear_all_absent(const TextureDesc& desc, std::span<const std::byte> presence,
+                      std::span<std::byte> blocks) noexcept;
+
+/// The alpha bits of the 10-bit formats do not get into the picture and come back as zero. Samples
+/// that no raster leads to (lossy or damaged ones) are clamped. picture_to_raster works in place
+/// and leaves the picture unspecified.
 void raster_to_picture(Isa isa, const TextureDesc& desc, const FrameShape& shape,
                        std::span<const std::byte> raster, Picture& picture);
 void picture_to_raster(Isa isa, const TextureDesc& desc, const FrameShape& shape, Picture& picture,

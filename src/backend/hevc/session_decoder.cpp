@@ -54,7 +54,8 @@ Status SessionDecoder::decode_update(const DecodeJob& job) {
     if (const Status status = read_alpha(*payload, job.records); status != Status::ok)
       return status;
   }
-  // A third-party decoder may conceal errors; the hash catches wrong texels.
+  clear_all_absent(desc_, job.presence, job.records);
+  // A third-party decoder may hide an error; wrong texels must not get out.
   return checksum(job.records) == head.hash ? Status::ok : Status::corrupt;
 }
 

@@ -102,6 +102,7 @@ Status SessionEncoder::encode_update(const EncodeJob& job, std::vector<std::byte
     const auto block = job.records[i];
     records_.insert(records_.end(), block.begin(), block.end());
   }
+  fill_absent(desc_, job.presence, records_);
   blocks_to_raster(desc_, shape_, job.blocks, records_, raster_);
   raster_to_picture(settings_.isa, desc_, shape_, raster_, picture_);
   PayloadHead head{.packing = shape_.packing,
@@ -122,8 +123,9 @@ Status SessionEncoder::encode_update(const EncodeJob& job, std::vector<std::byte
     raster_to_blocks(desc_, shape_, job.blocks, raster_, records_);
     const Payload own{.head = head, .alpha_section = alpha, .access_unit = {}};
     if (const Status status = read_alpha(own, records_); status != Status::ok) return status;
-    std::copy(records_.begin(), records_.end(), job.decoded.begin());
   }
+  clear_all_absent(desc_, job.presence, records_);
+  if (lossy()) std::copy(records_.begin(), records_.end(), job.decoded.begin());
   head.hash = checksum(records_);
   const std::size_t before = out.size();
   write_payload(head, alpha, access_unit_, out);
