@@ -85,7 +85,7 @@ TEST(FailingContainer, AnIndexPartIsWrittenAfterEveryAllocation) {
   std::size_t size = 0;
   const auto unchanged = [&] { EXPECT_EQ(sink.bytes.size(), size); };
   for (std::size_t i = 0; i < kPartPackets + 2; ++i) {
-    const auto packet = maker.make(0, 0, i % 50 == 0, random, 3);
+    const auto packet = maker.make(0, kWhole, i % 50 == 0, random, 3);
     ASSERT_EQ(other.add(i, packet), Status::ok);
     sink.bytes.reserve(expected.bytes.size());
     size = sink.bytes.size();
