@@ -210,9 +210,9 @@ std::string check_volume(const VolumeDesc& volume, const Backend& backend, Gener
           encoder->read(t, TextureView{sent}) != Status::ok || whole != shown[t] || whole != sent) {
         return "other contents of " + textures[t].name;
       }
-      const auto [set, first] = set_of(volume, t);
+      const auto [group, first] = group_of(volume, t);
       const auto& first_changed = decoder->changed(static_cast<std::uint8_t>(first));
-      if (set->bundled && !std::ranges::equal(decoder->changed(t), first_changed)) {
+      if (group->bundled && !std::ranges::equal(decoder->changed(t), first_changed)) {
         return "blocks of " + textures[t].name + " travel alone";
       }
     }

@@ -68,8 +68,8 @@ TEST(BrickPlace, HasItsBitsInTurn) {
   EXPECT_EQ(morton_key({0, 1, 0}), 2U);
   EXPECT_EQ(morton_key({0, 0, 1}), 4U);
   EXPECT_EQ(morton_key({2, 3, 1}), 0b011'110U);
-  constexpr std::uint32_t kMost = kMaxBrickSide - 1;
-  EXPECT_EQ(morton_key({kMost, kMost, kMost}), (std::uint64_t{1} << 54) - 1);
+  constexpr std::uint32_t kMax = kMaxBrickSide - 1;
+  EXPECT_EQ(morton_key({kMax, kMax, kMax}), (std::uint64_t{1} << 54) - 1);
   const auto bytes = packed({3, {2, 0, 0}});
   EXPECT_EQ(bytes[0], std::byte{8});
   EXPECT_EQ(bytes[7], std::byte{3});

@@ -7,9 +7,9 @@
 namespace gicodec {
 
 Status system_random(std::span<std::byte> out) noexcept {
-  constexpr std::size_t kMost = 256;  // getentropy()'s limit per call
+  constexpr std::size_t kMax = 256;  // getentropy()'s limit per call
   while (!out.empty()) {
-    const std::size_t size = std::min(out.size(), kMost);
+    const std::size_t size = std::min(out.size(), kMax);
     if (getentropy(out.data(), size) != 0) return Status::io_failed;
     out = out.subspan(size);
   }

@@ -106,19 +106,19 @@ class RunModel {
     std::uint32_t one = 1U << (kBitScale - 1);  ///< probability of a 1
     std::uint32_t asked = 0;
   };
-  static constexpr unsigned kSkip = 0, kMore = 1, kMostWidth = 25, kDigits = 2;
-  static constexpr std::uint32_t kLikely = 58982, kMostAsked = 30, kFar = 16;
+  static constexpr unsigned kSkip = 0, kMore = 1, kMaxWidth = 25, kDigits = 2;
+  static constexpr std::uint32_t kLikely = 58982, kMaxAsked = 30, kFar = 16;
   /// Bounds probabilities, so that every bit costs bytes and time stays in proportion to them.
-  static constexpr std::uint32_t kLeast = 1U << (kBitScale - 6);
+  static constexpr std::uint32_t kMin = 1U << (kBitScale - 6);
 
   template <typename Coder>
   static bool bit(Coder& coder, Counter& counter, bool told) {
-    const bool one = coder.bit(std::clamp(counter.one, kLeast, (1U << kBitScale) - kLeast), told);
+    const bool one = coder.bit(std::clamp(counter.one, kMin, (1U << kBitScale) - kMin), told);
     const std::uint32_t rate = (2U << kBitScale) / (2 * counter.asked + 3);
     const std::uint32_t off = one ? (1U << kBitScale) - 1 - counter.one : counter.one;
     const auto step = static_cast<std::uint32_t>(std::uint64_t{off} * rate >> kBitScale);
     counter.one = one ? counter.one + step : counter.one - step;
-    counter.asked = std::min(counter.asked + 1, kMostAsked);
+    counter.asked = std::min(counter.asked + 1, kMaxAsked);
     return one;
   }
 
@@ -126,7 +126,7 @@ class RunModel {
   std::uint32_t number(Coder& coder, unsigned kind, std::uint32_t value) {
     const auto told = static_cast<unsigned>(std::bit_width(value + 1));
     unsigned width = 1;
-    while (width < kMostWidth && bit(coder, wider_[kind][far_][width], told > width)) ++width;
+    while (width < kMaxWidth && bit(coder, wider_[kind][far_][width], told > width)) ++width;
     std::uint32_t read = 1;
     unsigned left = width - 1;
     for (unsigned digit = 0; digit < kDigits && left > 0; ++digit) {
@@ -138,8 +138,8 @@ class RunModel {
     return read - 1;
   }
 
-  std::array<std::array<std::array<Counter, kMostWidth>, 2>, 2> wider_;
-  std::array<std::array<std::array<Counter, 1U << kDigits>, kMostWidth + 1>, 2> digit_;
+  std::array<std::array<std::array<Counter, kMaxWidth>, 2>, 2> wider_;
+  std::array<std::array<std::array<Counter, 1U << kDigits>, kMaxWidth + 1>, 2> digit_;
   bool far_ = false;  ///< the last skip was long
 };
 

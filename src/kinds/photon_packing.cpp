@@ -26,16 +26,16 @@ float to_float(double value) noexcept {
 
 /// Rounds to nearest, ties to even. Precondition: 0 <= value <= kLargestHalf.
 std::uint16_t to_half(double value) noexcept {
-  constexpr int kFraction = 10, kLeast = -14;
+  constexpr int kFraction = 10, kMin = -14;
   if (value == 0) return 0;
-  const int exponent = std::max(std::ilogb(value), kLeast);
+  const int exponent = std::max(std::ilogb(value), kMin);
   const double steps = std::ldexp(value, kFraction - exponent);
   double whole = std::floor(steps);
   const double rest = steps - whole;
   if (rest > 0.5 || (rest == 0.5 && std::fmod(whole, 2) != 0)) ++whole;
   // Adding lets a fraction that rounds up to 2 carry into the exponent; subnormals have no implicit
   // 1.
-  const int code = ((exponent - kLeast) << kFraction) + static_cast<int>(whole);
+  const int code = ((exponent - kMin) << kFraction) + static_cast<int>(whole);
   return static_cast<std::uint16_t>(code);
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint64_t kSmallPacket = std::uint64_t{1} << 20;
 /// Beyond so many regions the reader reads all packets, and the player skips unselected ones.
-constexpr std::uint64_t kMostSelected = 1U << 16;
+constexpr std::uint64_t kMaxSelected = 1U << 16;
 
 std::vector<TextureDecoders::Texture> textures_of(const ContainerDescription& description) {
   std::vector<TextureDecoders::Texture> textures;
@@ -95,7 +95,7 @@ Status ContainerPlayer::select(std::span<const std::uint8_t> textures) {
       // The regions of an unknown kind are unknown.
       const std::uint32_t regions =
           is_known(entry) ? regions_of(entry.desc, region).regions() : UINT32_MAX;
-      few = wanted.size() + std::uint64_t{regions} <= kMostSelected;
+      few = wanted.size() + std::uint64_t{regions} <= kMaxSelected;
       for (std::uint32_t r = 0; few && r < regions; ++r) wanted.push_back({texture, r});
     }
     if (!few) wanted.clear();

@@ -48,14 +48,14 @@ Sample sample_of(const Component& component) {
 
 /// Samples of E5B9G9R9: for each channel a mantissa and again the exponent.
 std::vector<Sample> shared_exponent_samples(const Record& record) {
-  constexpr std::uint32_t kLargest = 8448, kBias = 15, kMostExponent = 31;
+  constexpr std::uint32_t kLargest = 8448, kBias = 15, kMaxExponent = 31;
   std::vector<Sample> samples;
   const Component& exponent = record.components[3];
   for (std::size_t i = 0; i < 3; ++i) {
     const Component& mantissa = record.components[i];
     const std::uint32_t channel = channel_of(letter(mantissa));
     samples.push_back({mantissa.offset, mantissa.bits, channel, 0, kLargest});
-    samples.push_back({exponent.offset, exponent.bits, channel | kExponent, kBias, kMostExponent});
+    samples.push_back({exponent.offset, exponent.bits, channel | kExponent, kBias, kMaxExponent});
   }
   return samples;
 }
