@@ -1,5 +1,6 @@
 // Streams all textures of a volume, here batches of photons, from an encoder to a decoder.
 #include <gicodec/gicodec.h>
+#include <gicodec/photons.h>
 
 #include <cstdio>
 #include <iterator>

@@ -3,6 +3,7 @@
 #include "shapes.h"
 
 #include <gicodec/probes.h>
+#include <gicodec/textures.h>
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 

@@ -4,10 +4,11 @@
 #include "common/container_input.h"
 #include "dump/error.h"
 #include "halves.h"
-#include "kinds/source_container.h"
+#include "programs/source_container.h"
 
-#include <gicodec/decoder.h>
 #include <gicodec/inspect.h>
+#include <gicodec/volume_decoder.h>
+#include <gicodec/volume_encoder.h>
 
 #include <gtest/gtest.h>
 
@@ -17,34 +18,6 @@ namespace gicodec::maps {
 namespace {
 
 constexpr std::size_t kIrradiance = 1;  // texture
-
-/// What a client is given of a source, packet by packet.
-class Receiver {
- public:
-  explicit Receiver(const VolumeDesc& desc) {
-    DecoderOptions options;
-    options.backends = {hevc_.get()};
-    for (const TextureGroup& set : desc.groups) {
-      for (const NamedTexture& texture : set.textures) {
-        decoders_.push_back(tools::take(Decoder::create(texture.desc, options), "decoder"));
-        texels.emplace_back(static_cast<std::size_t>(texture_bytes(texture.desc)));
-      }
-    }
-  }
-  void receive(std::span<const Packet> packets) {
-    for (std::size_t i = 0; i < packets.size(); ++i) {
-      // Masks come first: as records of the blocks that the packet of texels holds.
-      if (i == kIrradiance) tools::check(decoders_[i].set_presence(texels[0]), "presence");
-      tools::check(decoders_[i].decode(packets[i], TextureView{texels[i]}), "packet");
-    }
-  }
-
-  std::vector<std::vector<std::byte>> texels;
-
- private:
-  std::unique_ptr<const Backend> hevc_ = tools::hevc_decoder({});
-  std::vector<Decoder> decoders_;
-};
 
 /// The error of what a client shows, as a root of a mean square.
 double error_of(const MapServer& server, const MapLight& light) {
@@ -64,22 +37,28 @@ TEST(LossyMaps, AClientShowsNearlyTheServersMap) {
     MapServer server(scene, test::options({"way=map", "gather=texels", "qp=8"}), 2, {});
     server.update(0);
     test::Held held(server);
-    ddgi::VolumeEncoders encoders(held.desc, "native", "map", 0, std::array{-1, qp, -1});
-    Receiver receiver(held.desc);
+    const auto hevc = tools::lossy_hevc(qp);
+    auto encoder = tools::take(
+        VolumeEncoder::create(held.desc, {.texture_backends = {nullptr, hevc.get(), nullptr}}),
+        "encoder");
+    auto decoder =
+        tools::take(VolumeDecoder::create(held.desc, {.backends = {hevc.get()}}), "decoder");
     MapLight light(rays, held.desc);
     light.set_filter(0);
     for (int update = 0; update < 4; ++update) {
       if (update > 0) server.update(update * 0.2);
       const auto textures = server.textures();
-      const std::vector<ddgi::Texels> texels(textures.begin(), textures.end());
-      const std::vector<Packet> packets = encoders.encode(texels);
+      const std::vector<ConstTextureView> views(textures.begin(), textures.end());
+      const std::vector<Packet> packets = tools::take(encoder.encode(views), "packets");
       for (std::size_t i = 0; i < packets.size(); ++i)
         EXPECT_EQ(peek(packets[i])->lossy, i == kIrradiance) << i;
       bytes[qp == 8 ? 0 : 1] += packets[kIrradiance].size();
-      receiver.receive(packets);
-      EXPECT_EQ(receiver.texels[0], textures[0]) << "what exists is told exactly";
-      EXPECT_NE(receiver.texels[kIrradiance], textures[kIrradiance]);
-      held.texels = receiver.texels;
+      ASSERT_EQ(decoder.decode(packets), Status::ok);
+      for (std::uint8_t i = 0; i < packets.size(); ++i) {
+        ASSERT_EQ(decoder.read(i, TextureView{held.texels[i]}), Status::ok);
+      }
+      EXPECT_EQ(held.texels[0], textures[0]) << "which texels exist is exact";
+      EXPECT_NE(held.texels[kIrradiance], textures[kIrradiance]);
       held.show(light, update * 0.2);
       EXPECT_LT(error_of(server, light), qp == 8 ? 0.01 : 0.05) << update;
     }

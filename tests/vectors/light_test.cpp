@@ -123,7 +123,8 @@ TEST(VectorLight, TheOrderInWhichVerticesComeDoesNotMatter) {
         const auto packet = encoder.encode(ConstTextureView(held.texels), Selection(these));
         ASSERT_TRUE(packet.ok());
         ASSERT_EQ(decoder.decode(*packet), Status::ok);
-        ASSERT_TRUE(std::ranges::is_permutation(test::listed_blocks(decoder, *packet), these));
+        ASSERT_TRUE(
+            std::ranges::is_permutation(::gicodec::test::listed_blocks(decoder, *packet), these));
         // What has come is shown as it is, at once.
         client.texels.assign(decoder.records().begin(), decoder.records().end());
         client.received.assign(decoder.received().begin(), decoder.received().end());

@@ -74,7 +74,7 @@ Exit judge(const ClientFlags& o, const Received& r) {
   return Exit::ok;
 }
 
-Exit run_crowd(const ClientFlags& o, const CameraPath& path) {
+Exit run_load_test(const ClientFlags& o, const CameraPath& path) {
   const SimulateOptions options{
       o.viewer.link.server, o.viewer.link.net, o.viewer.client,        o.simulate,
       o.viewer.updates,     o.viewer.seconds,  o.viewer.link.patience, o.viewer.scene};
@@ -111,7 +111,7 @@ Exit recorded(const ClientFlags& o, const ClientRecording* recording) {
   return Exit::different;
 }
 
-Exit run_viewer(ClientFlags& o, const CameraPath& path, Painter* painter,
+Exit run_viewer(ClientFlags& o, const CameraPath& path, Renderer* renderer,
                 ClientRecording* recording) {
   std::unique_ptr<tools::OutputDirectory> folder;
   if (renderer != nullptr) folder = std::make_unique<tools::OutputDirectory>(o.output);
