@@ -404,7 +404,7 @@ TEST(HostileContainer, AnIndexOfOtherPackets) {
   // No packet at all.
   const auto head = head_of(sample.description);
   const auto skipped = entry(0x80, Bytes(10));
-  const std::vector<SeekEntry> one{{0, head.size(), 0, 0, true}};
+  const std::vector<SeekEntry> one{{0, head.size(), StreamId::kWholeVolume, 0, true}};
   const auto packet = packet_entry(sample.packets[0]);
   const std::uint64_t at = head.size() + skipped.size() + packet.size();
   const auto file = head + skipped + packet + part_entry(one, 0, at) + end_entry(at);

@@ -129,7 +129,7 @@ TEST_F(CliWords, NumbersAndNamesThatAreNone) {
   expect_usage({"encode", "-o", "x.gic", "--chunk", "many", "in"}, {"\"many\"", "0 to 4096"});
   expect_usage({"preview", dumps_[0], "--exposure", "nan", "-o", "x.png"},
                {"\"nan\"", "no number"});
-  expect_usage({"encode", "--core", "-o", "x.gic", "in"}, {"--core", "no value", "-o"});
+  expect_usage({"encode", "--core", "-o", "x.gic", "in"}, {"--core", "a value is missing", "-o"});
   expect_usage({"encode", "-o", "x.gic", "--core", "colr=8", "in"}, {"--core colr=8", "color"});
   expect_usage({"encode", "-o", "x.gic", "--max-error", "=2", "in"}, {"called \"\"", "color"});
   expect_usage({"encode", "-o", "x.gic", "--max-error", "color=2,vis=3", "in"},

@@ -180,7 +180,7 @@ std::vector<std::byte> small_packets_of_a_great_region() {
     const std::vector<std::uint32_t> blocks{block};
     check(
         writer.add(block,
-                   take(encoder.encode(ConstTextureView(texels), Selection(blocks)), "packet"), 1),
+                   take(encoder.encode(ConstTextureView(texels), Selection(blocks)), "packet"), 0),
         "packet");
   }
   check(writer.finish(), "index");
