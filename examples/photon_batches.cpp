@@ -9,8 +9,8 @@
 int main() {
   using namespace gicodec;
   // 8 batches of up to 64 photons: how many there are of each, where they lie, and the photons.
-  constexpr std::size_t kCounts = 0, kBatches = 1, kPhotons = 2, kMax = 64;
-  const auto volume = photon_volume(8, kMax);
+  constexpr std::size_t kCounts = 0, kBatches = 1, kPhotons = 2, kCapacity = 64;
+  const auto volume = photon_volume(8, kCapacity);
   if (!volume) return 1;
   auto encoder = VolumeEncoder::create(*volume);
   auto decoder = VolumeDecoder::create(*volume);
@@ -24,7 +24,7 @@ int main() {
   for (unsigned update = 0; update < 3; ++update) {
     // A batch is traced anew. The counts say which of its photons exist.
     const std::size_t count = 20 + update;
-    const auto out = std::span(server[kPhotons]).subspan(update * kMax * kPhotonBytes);
+    const auto out = std::span(server[kPhotons]).subspan(update * kCapacity * kPhotonBytes);
     server[kCounts][2 * update] = std::byte(count);
     pack_photon_batch(
         {},
