@@ -15,6 +15,8 @@
 #include <meshoptimizer.h>
 #endif
 
+#include <gicodec/volume_encoder.h>
+
 #include <algorithm>
 #include <array>
 #include <chrono>

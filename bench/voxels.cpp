@@ -8,7 +8,8 @@
 #include "voxels/cut.h"
 #include "voxels/voxels.h"
 
-#include <gicodec/decoder.h>
+#include <gicodec/volume_decoder.h>
+#include <gicodec/volume_encoder.h>
 
 #include <fmt/core.h>
 
@@ -146,10 +147,8 @@ std::size_t bytes_of(const std::vector<Packet>& packets) {
 class Stream {
  public:
   explicit Stream(const Case& c)
-      : bricks_(make_encoder(c.desc(0))),
-        light_(make_encoder(c.desc(1))),
-        held_bricks_(tools::take(Decoder::create(c.desc(0), decoding()), "decoder")),
-        held_light_(tools::take(Decoder::create(c.desc(1), decoding()), "decoder")) {}
+      : encoder_(tools::take(VolumeEncoder::create(c.volume, {.gop = 0}), "encoder")),
+        decoder_(tools::take(VolumeDecoder::create(c.volume, {.limits = kNoLimits}), "decoder")) {}
 
   /// Bytes of both packets: of all that changed, or what changed of a client's slots, those in the
   /// mask.
@@ -186,15 +185,8 @@ class Stream {
     };
     return !same(0, c.server.pool().bricks()) || !same(1, c.server.pool().light());
   }
-  static DecoderOptions decoding() {
-    DecoderOptions options;
-    options.limits.max_texture_bytes = options.limits.max_total_bytes = UINT64_MAX;
-    options.limits.max_packet_bytes = SIZE_MAX;
-    options.limits.max_work_bytes = UINT64_MAX;
-    return options;
-  }
-  Encoder bricks_, light_;
-  Decoder held_bricks_, held_light_;
+  VolumeEncoder encoder_;
+  VolumeDecoder decoder_;
 };
 
 std::size_t bricks_of(const Case& c) {
@@ -309,8 +301,7 @@ void print_pictures(const Options& o, const std::string& scene) {
     return ddgi::render(rays, &client, camera, picture_options(), pool);
   };
   const ddgi::Picture whole = draw({});
-  Encoder places = make_encoder(c.desc(0)), lights = make_encoder(c.desc(1));
-  tools::check(lights.set_presence(bricks), "presence");
+  auto encoder = tools::take(VolumeEncoder::create(c.volume), "encoder");
   std::vector<std::uint8_t> received(slots);
   std::size_t bytes = 0;
   const std::size_t place = c.server.pool().shape().place_bytes();

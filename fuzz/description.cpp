@@ -13,7 +13,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (read_description(body.span(), {}, {}, read) != Status::ok) return 0;
     fuzz::check(write_description(read, {}, again) == Status::ok, "what was read can be written");
   } else {
-    constexpr PacketRule kRules[] = {{0, 0, true}, {1, 4, true}, {1, kMaxBlocks, false}};
+    constexpr PacketRule kRules[] = {{0, true}, {4, true}, {kMaxBlocks, false}};
     constexpr std::uint64_t kFirst = 40, kOffset = 0x3FFFFFFF;
     const auto head = read_index_part_head(body.span());
     std::vector<SeekEntry> index;
