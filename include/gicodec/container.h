@@ -81,9 +81,10 @@ struct TextureRegion {
   std::uint32_t region = StreamId::kWholeVolume;
   friend constexpr bool operator==(const TextureRegion&, const TextureRegion&) = default;
 };
-/// Writes a container front to back, without seeking. A call that fails, for lack of memory or by
-/// the sink, changes nothing: the caller may repeat it or go on without it. After finish() every
-/// call answers out_of_order. One thread at a time.
+
+/// Writes a container front to back, without seeking. A failed call changes nothing: the caller may
+/// repeat it or go on without it. After finish() every call answers out_of_order. One thread at a
+/// time.
 class ContainerWriter {
  public:
   /// Writes file header and description. `sink` must outlive the writer. invalid_description if a
@@ -125,9 +126,9 @@ struct ContainerPacket {
   std::vector<std::byte> bytes;
 };
 
-/// Reads a container front to back. If the source can seek and the index is sound, also selected
-/// textures, and from any frame on. Safe on hostile bytes. A file that was cut off, or is growing,
-/// gives every packet before its end. One thread at a time.
+/// Reads a container front to back. If the source can seek and the index is sound, it can also read
+/// selected textures, and from any frame on. Of a file that was cut off or is growing it reads all
+/// packets before the end. Safe on hostile bytes. One thread at a time.
 class ContainerReader {
  public:
   /// Reads header and description, and the index if the source can seek. `source` must outlive the

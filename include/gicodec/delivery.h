@@ -1,5 +1,5 @@
-// What a streaming server delivers, to whom and how often: the words that Server, Client and
-// protocol share.
+// What a streaming server delivers, and how often: types that Server, Client, protocol and
+// containers share.
 #pragma once
 
 #include <gicodec/api.h>
@@ -15,40 +15,41 @@ namespace GICODEC_API gicodec {
 /// How a texture is sent.
 struct StreamedTexture {
   std::string_view texture;  ///< its name; read during the call
-  /// In every n-th update, 1 or more; the same in a group that is bundled, and in groups
-  /// that depend on one another.
+  /// The texture is sent in every n-th update, 1 or more. Equal for all textures of a bundled group
+  /// and of groups that depend on one another.
   std::uint32_t interval = 1;
-  /// Blocks whose records are all off by no more than this, see error_bound.h, at the client are
-  /// not sent; 0 where any bit counts, and then every changed bit does.
+  /// A changed block is not sent while all its records at the client are off by no more than this,
+  /// see error_bound.h. 0: every changed bit counts.
   float threshold = 0;
-  /// How far what clients decode may be off, see error_bound.h and EncoderOptions::max_error. Not
-  /// together with a threshold; 0 where any bit counts.
+  /// Error bound of records that clients decode, see error_bound.h and EncoderOptions::max_error.
+  /// 0: lossless; must be 0 if `threshold` is not.
   float max_error = 0;
-  /// How far what is published is off already, as TextureEntry::largest_error; clients are told.
+  /// Largest error of the published records themselves, as TextureEntry::largest_error. Clients
+  /// learn the error of both together.
   float source_error = 0;
 };
 
-/// What a client may be sent in one update, all its textures together; 0 for no limit. Unicast
-/// packets keep to it in every update wherever one block, in all textures in which it travels
-/// together, does not exceed it. Of shared ones it is the average: clients take part in each region
-/// in every update, every 2nd, 4th, ... 32nd.
+/// What one update to a client may contain, in all textures together; 0: no limit. Unicast packets
+/// keep to it in every update, unless a single block exceeds it in the textures of its bundle.
+/// Shared packets keep to it on average: a client takes part in each region in every update, every
+/// 2nd, 4th, ... 32nd.
 struct Budget {
   std::uint32_t blocks = 0;
   std::uint64_t bytes = 0;
 };
 
 enum class Delivery : std::uint8_t {
-  unicast,  ///< packets made for this client: exactly the blocks it sees, within its budget
-  shared,   ///< packets of regions, made once for all who see one of their blocks
+  unicast,  ///< packets made for one client: exactly the blocks it sees, within its budget
+  shared,   ///< packets of regions, made once for all clients that see one of their blocks
 };
 
 using ClientId = std::uint32_t;  ///< never given twice
 
-/// Which chain a packet belongs to. Each has its own Decoder at the client.
+/// The chain that a packet belongs to. The client has a Decoder for each.
 struct StreamId {
   std::uint16_t volume = 0;
   std::uint8_t texture = 0;
-  /// As RegionGrid counts them, or kWholeVolume.
+  /// Its number in RegionGrid; kWholeVolume for unicast delivery.
   std::uint32_t region = kWholeVolume;
 
   static constexpr std::uint32_t kWholeVolume = UINT32_MAX;
@@ -64,11 +65,11 @@ struct OutgoingPacket {
   std::shared_ptr<const Packet> packet;  ///< shared by the clients of a region
 };
 
-/// Blocks in the packets of an update, shared ones counted once: what it cost.
+/// Blocks in the packets of an update, shared packets counted once: a measure of its cost.
 struct WrittenBlocks {
   std::uint64_t all = 0;
-  std::uint64_t unicast = 0;   ///< in those that Server::set_unicast_block_limit() limits
-  std::uint64_t examined = 0;  ///< to choose those of unicast packets
+  std::uint64_t unicast = 0;   ///< in packets that Server::set_unicast_block_limit() limits
+  std::uint64_t examined = 0;  ///< candidates for unicast packets
 };
 
 }  // namespace gicodec

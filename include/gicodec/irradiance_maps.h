@@ -14,18 +14,18 @@ inline constexpr std::uint8_t kKindIrradianceMaps = 4;
 
 /// How a map is streamed.
 enum class MapWay : std::uint8_t {
-  map = 0,    ///< its texels
-  bases = 1,  ///< coefficients of basis functions, and once how each texel blends up to 8 of them
+  map = 0,    ///< as texels
+  bases = 1,  ///< as coefficients of basis functions; sent once: how each texel blends up to 8
 };
 
-/// Texels along a side of a tile. A tile says by a mask of 32 bytes which of its texels lie on a
-/// surface, row by row, lowest bit first.
+/// Texels along a side of a tile. Each tile has a mask of 32 bytes: a bit per texel, row by row,
+/// lowest bit first, set if the texel lies on a surface.
 inline constexpr std::uint8_t kMapTile = 16;
-inline constexpr std::uint32_t kMaxMapSide = 16384;
-/// Bases along a side of a block of coefficients, which should be alike.
+inline constexpr std::uint32_t kMaxMapSide = 16384;  ///< texels
+/// Bases along a side of a block. The coefficients of a block should be similar.
 inline constexpr std::uint8_t kMapBaseBlock = 8;
 inline constexpr std::uint32_t kMaxMapBases = 65536;
-inline constexpr std::uint32_t kMapBlends = 8;  ///< bases of a texel
+inline constexpr std::uint32_t kMapBlends = 8;  ///< bases that a texel blends, at most
 
 struct IrradianceMapDesc {
   /// Texels, 1..kMaxMapSide.
@@ -39,19 +39,18 @@ struct IrradianceMapDesc {
   friend bool operator==(const IrradianceMapDesc&, const IrradianceMapDesc&) = default;
 };
 
-/// Kind 4. Sets in order:
-/// - `map`: tiles of "coverage" and "irradiance", together, the latter of texels that are covered;
-/// - `bases`: "coefficients", a pool of blocks of 8×8 bases; then tiles of "blend coverage" and
-///   "blend", together: of each covered texel the numbers of 8 bases and their weights, of 255;
-/// - last of both ways, of one block: "parameterisation", the hash of what both ends derive from
-/// the
+/// Kind 4. Texture groups in order:
+/// - `map`: bundled tiles of "coverage" and "irradiance"; only covered texels exist in the latter;
+/// - `bases`: "coefficients", a pool of blocks of 8×8 bases; then bundled tiles of "blend coverage"
+///   and "blend": for each covered texel the numbers of 8 bases and their weights in 1/255;
+/// - `map` and `bases`: "parameterisation", one block with a hash of what both ends derive from the
 ///   scene.
-/// Their records are in FORMAT.md, "Kinds".
+/// FORMAT.md, "Kinds", has the records.
 extern const Kind kIrradianceMaps;
 
-/// invalid_description for numbers out of range, and for those of another way that are not 0.
+/// invalid_description if a number is out of range, or is not 0 and belongs to the other MapWay.
 [[nodiscard]] Result<VolumeDesc> irradiance_map_volume(const IrradianceMapDesc& desc);
-/// What such a volume was made of, bases in whole blocks. invalid_description for any other.
+/// The inverse; `bases` is in whole blocks. invalid_description for a volume of another kind.
 [[nodiscard]] Result<IrradianceMapDesc> irradiance_map_desc(const VolumeDesc& volume);
 
 }  // namespace gicodec

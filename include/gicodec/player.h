@@ -25,7 +25,7 @@ struct PlayerOptions {
   /// from the first packet of its texture, or region, on.
   DecodeLimits limits = {};
   std::vector<const Backend*> backends = {};  ///< besides the built-in ones; outlive the player
-  std::vector<const Kind*> kinds = {};        ///< likewise
+  std::vector<const Kind*> kinds = {};        ///< besides the built-in ones; outlive the player
   Threads threads = {};                       ///< per packet
   Isa isa = best_isa();                       ///< kernels; the machine must have it
 };

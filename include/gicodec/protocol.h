@@ -1,5 +1,5 @@
 // Messages between a streaming server and its clients, over any transport that delimits messages
-// (docs/protocol.md). Server and Client speak it; this header is for those who write another end.
+// (docs/protocol.md). For programs that do without Server or Client.
 #pragma once
 
 #include <gicodec/api.h>
@@ -26,72 +26,71 @@ inline constexpr std::uint8_t kProtocolVersion = 1;
 
 using Message = std::vector<std::byte>;
 
-/// A message to be sent, in two pieces: all clients that get the same second one share it.
+/// A message to send, in two pieces. Clients with the same second piece share it.
 struct OutgoingMessage {
   Message head;
-  std::shared_ptr<const Message> rest = nullptr;  ///< null: there is no more
+  std::shared_ptr<const Message> rest = nullptr;  ///< null: the message is `head`
 
-  /// What goes over the wire as one message, for writev() and the like. Refers to this.
+  /// Both pieces, to be sent as one message, e.g. by writev(). They refer to this object.
   [[nodiscard]] std::array<std::span<const std::byte>, 2> pieces() const noexcept {
     return {std::span(head), rest == nullptr ? std::span<const std::byte>() : std::span(*rest)};
   }
   [[nodiscard]] std::size_t size() const noexcept {
     return head.size() + (rest == nullptr ? 0 : rest->size());
   }
-  /// Both in one. out_of_memory.
+  /// Both pieces as one message. out_of_memory.
   [[nodiscard]] Result<Message> joined() const;
 };
 
 // A *sync point* is an agreement of both ends on what the client holds. The client opens one with
-// every Hello and Resync, by naming the states it holds; until the server answers to that sync
+// every Hello and Resync, which list the states it holds. Until the server answers to that sync
 // point, the client drops what it receives. Updates of a sync point are numbered from 1 without
 // gaps.
 
-// Volumes come and go. Each list of them has a *generation*, one more than that before. What a
-// client says of volumes is about those of the generation that it names: a number may have been
-// given to another one since.
+// Volumes come and go. Each list of volumes has a *generation*, 1 more than the list before. A
+// client's message names the generation that it refers to, because a later one may give the number
+// of a volume to another.
 
-/// The state that a client holds of a stream: its last packet.
+/// The state that a client holds of a stream, given by the last packet it applied.
 struct HeldState {
   StreamId stream = {};
   std::uint32_t sequence = 0, checksum = 0;
 };
 
-/// What a client shows to go on with its session, once: the next Welcome has another one. Zeros:
-/// none.
+/// Lets a client continue its session, once: the next Welcome brings another. Zeros: none.
 using Ticket = std::array<std::byte, 16>;
 
 /// Client: the first message of a connection.
 struct Hello {
   std::uint32_t sync = 0;
-  Ticket ticket = {};  ///< of the session to go on with; zeros for a new one
+  Ticket ticket = {};  ///< of the session to continue; zeros for a new one
   Delivery delivery = Delivery::unicast;
   Budget budget = {};
-  std::string token = {};  ///< at most kMaxToken bytes, not only of UTF-8
+  std::string token = {};  ///< at most kMaxToken bytes of any value
   std::uint32_t generation = 0;
   std::vector<HeldState> held = {};
 };
 
-/// Client: it missed something or could not decode it; this is all it holds.
+/// Client: it missed an update or could not apply one; `held` is all that it holds.
 struct Resync {
   std::uint32_t sync = 0, generation = 0;
   std::vector<HeldState> held = {};
 };
 
-/// Client: all updates of the sync point up to this number are applied.
+/// Client: it applied all updates of the sync point up to this number; 0: only the Welcome.
 struct Acknowledge {
   std::uint32_t sync = 0, number = 0;
 };
 
-/// Client: where it looks from. World units; the server decides what that makes visible.
+/// Client: its camera, in world units. The server decides which blocks that makes visible.
 struct Viewpoint {
   Position eye{}, target{0, 0, -1}, up{0, 1, 0};
   float fov_y = 60;  ///< degrees, over 0 and below 180
   float aspect = 1;  ///< width over height, positive
-  float time = 0;    ///< of the client's picture, seconds; 0 if it has no clock of its own
+  float time = 0;    ///< of the client's picture, seconds; 0: the client has no clock of its own
 };
 
-/// Client: the blocks of a volume that it wants, whatever it looks at.
+/// Client: the blocks of a group that it wants, whatever its viewpoint.
 struct Subscribe {
   std::uint32_t generation = 0;
   std::uint16_t volume = 0;
@@ -101,22 +100,22 @@ struct Subscribe {
 
 /// Why a connection is dropped. Numbers are stable.
 enum class Reason : std::uint8_t {
-  left = 0,            ///< of its own accord
+  left = 0,            ///< the other end left
   version = 1,         ///< another protocol version
   token = 2,           ///< the token is wrong
-  full = 3,            ///< no more clients are taken
+  full = 3,            ///< the server takes no more clients
   malformed = 4,       ///< a message that breaks the protocol
   too_large = 5,       ///< a message beyond the limits
   flood = 6,           ///< more messages than the limits allow
   out_of_order = 7,    ///< a message that may not come now
   unknown_volume = 8,  ///< a volume or stream that does not exist
   silent = 9,          ///< no Hello in time
-  stalled = 10,        ///< does not take or acknowledge updates
+  stalled = 10,        ///< the client does not take or acknowledge updates
   shutdown = 11,       ///< the server ends
-  replaced = 12,       ///< its session goes on over another connection
+  replaced = 12,       ///< the session continues over another connection
   dismissed = 13,      ///< the server's operator ended it
-  exhausted = 14,      ///< the server has no memory for it
-  unicast_full = 15,   ///< no more unicast clients are taken
+  exhausted = 14,      ///< the server has no memory for the client
+  unicast_full = 15,   ///< the server takes no more unicast clients
 };
 [[nodiscard]] std::string_view to_string(Reason reason) noexcept;
 
@@ -128,15 +127,15 @@ struct Goodbye {
 
 struct DescribedTexture {
   std::string name = {};
-  Layout layout = {};       ///< of the publisher
-  float largest_error = 0;  ///< of what is sent, see FORMAT.md, "Container"
+  Layout layout = {};       ///< of the publisher's views
+  float largest_error = 0;  ///< of decoded records, as TextureEntry::largest_error
   friend bool operator==(const DescribedTexture&, const DescribedTexture&) = default;
 };
 
-/// A volume as its kind describes it. Whether kind and description are known is for the receiver.
+/// A volume as its kind describes it. The receiver checks whether it knows the kind.
 struct DescribedVolume {
-  std::uint16_t id = 0;     ///< below kMaxVolumes
-  std::uint32_t added = 0;  ///< generation in which it came; id and this are of no other one
+  std::uint16_t id = 0;     ///< its number, below kMaxVolumes
+  std::uint32_t added = 0;  ///< generation in which it came; unique together with id
   std::string name = {};
   std::uint8_t kind = 0;
   std::vector<std::byte> description = {};
@@ -149,26 +148,26 @@ struct DescribedVolume {
 /// Server: the answer to a Hello.
 struct Welcome {
   std::uint32_t sync = 0;
-  Ticket ticket = {};    ///< with which the client can come back
-  bool resumed = false;  ///< the session of the Hello's ticket goes on
+  Ticket ticket = {};    ///< for the session's next Hello
+  bool resumed = false;  ///< the session of the Hello's ticket continues
   Delivery delivery = Delivery::unicast;
-  std::uint64_t epoch = 0;  ///< of the publisher: numbers and times of another mean nothing here
+  std::uint64_t epoch = 0;  ///< of the publisher, see ServerOptions::epoch
   SceneId scene = {};
   std::uint32_t generation = 0;
   std::vector<DescribedVolume> volumes = {};  ///< ascending by id
 };
 
-/// Server: the volumes from now on. Those that the client knows go on.
+/// Server: the volumes from here on. The client keeps those that it knows.
 struct Volumes {
   std::uint32_t generation = 0;
   std::vector<DescribedVolume> volumes = {};  ///< as in a Welcome
 };
 
-/// Server: one update, to be applied as a whole.
+/// Server: one update, which the client applies as a whole.
 struct UpdateMessage {
   struct Part {
     StreamId stream;
-    std::uint8_t tier = 0;  ///< the receiver takes part in every 2^tier-th update of the stream
+    std::uint8_t tier = 0;  ///< the client takes part in every 2^tier-th update of the stream
     std::span<const std::byte> packet;
   };
   struct Proof {
@@ -177,17 +176,17 @@ struct UpdateMessage {
   };
   std::uint32_t sync = 0, number = 0;
   std::uint32_t generation = 0;
-  std::uint64_t update = 0;  ///< Server::updates()
-  double time = 0;           ///< of what is shown, seconds, as the server's application says
+  std::uint64_t update = 0;          ///< Server::updates()
+  double time = 0;                   ///< of what is shown, seconds; the server's caller chooses it
   std::vector<Scroll> scrolls = {};  ///< of every volume, ascending by id
-  std::vector<Part> parts = {};      ///< spans into the bytes that were read
-  std::vector<Proof> proofs = {};    ///< for checking; usually none
+  std::vector<Part> parts = {};      ///< spans into the bytes given to read_message()
+  std::vector<Proof> proofs = {};    ///< hashes for the client to check; usually none
 };
 
 using AnyMessage = std::variant<Hello, Resync, Acknowledge, Viewpoint, Subscribe, Goodbye, Welcome,
                                 UpdateMessage, Volumes>;
 
-/// What a reader accepts; checked before anything is allocated.
+/// What read_message() accepts. It checks before it allocates.
 struct MessageLimits {
   std::uint64_t max_bytes = std::uint64_t{256} << 20;  ///< of a message
   std::uint32_t max_blocks = kMaxBlocks;               ///< of a list of blocks
@@ -195,14 +194,14 @@ struct MessageLimits {
 
 inline constexpr std::size_t kMaxToken = 256;
 inline constexpr std::size_t kMaxText = 1024;
-inline constexpr std::size_t kMaxHeld = 32768;  ///< states; those not listed count as not held
+inline constexpr std::size_t kMaxHeld = 32768;  ///< states; a stream not listed counts as not held
 inline constexpr std::size_t kMaxVolumes = 1024;
 inline constexpr std::uint8_t kMaxTier = 7;
 
-/// Replaces `out` by the bytes of a message. invalid_argument for what could not be read again.
+/// Replaces `out` by the bytes of a message. invalid_argument if read_message() would refuse them.
 Status write_message(const AnyMessage& message, Message& out);
 
-/// Reads one whole message. Whether volumes, streams and blocks exist is for the receiver to check.
+/// Reads one whole message. The caller checks whether its volumes, streams and blocks exist.
 /// Errors: truncated, corrupt, limit_exceeded, not_gicodec; unsupported_version for a Hello or
 /// Welcome of another version.
 [[nodiscard]] Result<AnyMessage> read_message(std::span<const std::byte> bytes,

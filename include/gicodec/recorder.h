@@ -1,4 +1,4 @@
-// Records what a Client receives as a container, packet by packet as it came.
+// Recorder: the packets that a Client receives in, a container out.
 #pragma once
 
 #include <gicodec/api.h>
@@ -15,41 +15,42 @@
 
 namespace GICODEC_API gicodec {
 
-/// One container, of one session and one list of volumes. To be called by a ClientListener:
+/// Writes one container, of one session and one list of volumes. A ClientListener calls it:
 ///
 ///     if (recorder && !recorder->fits(client)) { recorder->finish(); ... another sink ... }
 ///     recorder->add(client, packets);
 ///
-/// What a client holds already when the recording begins comes first, in snapshots that are made
-/// here, of one stream after the other. Nothing else is coded; only the number of a texture in the
-/// heads of packets is another one if there are several volumes.
+/// The container begins with snapshots of all streams that the client holds, which the recorder
+/// encodes. All other packets are copied; with several volumes only the texture number in their
+/// headers changes.
 class ClientRecorder {
  public:
-  /// The client's volumes as they are, for begin(). Metadata is the caller's to add.
-  /// limit_exceeded if a container has no room for so many; out_of_order before there are any.
+  /// Describes the client's present volumes, for begin(). The caller may add metadata.
+  /// limit_exceeded if they are too many for a container; out_of_order before the first Welcome.
   [[nodiscard]] static Result<ContainerDescription> describe(const Client& client);
-  /// Writes the container's head. `description`: describe()'s. `sink` must outlive the recorder.
+  /// Writes the container's header. `description`: that of describe(). `sink` must outlive the
+  /// recorder.
   [[nodiscard]] static Result<ClientRecorder> begin(Sink& sink, const Client& client,
                                                     const ContainerDescription& description);
   ClientRecorder(ClientRecorder&&) noexcept;
   ClientRecorder& operator=(ClientRecorder&&) noexcept;
   ~ClientRecorder();
 
-  /// False once the session, or the list of its volumes, is another one: finish() then.
+  /// False once the client has another session or list of volumes: finish() then.
   [[nodiscard]] bool fits(const Client& client) const noexcept;
-  /// Adds an update as the frame of its number (ClientFrame::update), after which the container
-  /// decodes to what the client holds; without packets there is none. Blocks of a volume that
-  /// scrolls come in a second packet of their stream, which takes a frame more: the numbers of
-  /// those that follow are higher then, until updates without packets make up for it.
-  /// out_of_order unless it fits(); unknown_texture. After another error its frame may not be
-  /// whole; the next call makes up for it, or finish() ends the container with what is there.
+  /// Adds an update as the frame of its number (ClientFrame::update); the container then decodes to
+  /// what the client holds. An update without packets adds no frame. A scrolling volume may bring
+  /// a second packet of a stream, which takes a further frame; later frames then have higher
+  /// numbers, until updates without packets make up for it. out_of_order unless fits();
+  /// unknown_texture. After another error the frame may be incomplete; the next add() repairs it,
+  /// or finish() ends the container as it stands.
   Status add(const Client& client, std::span<const UpdateMessage::Part> packets);
-  /// Streams that the client holds and the recording does not, until their next keyframe: their
-  /// backend remembers more than records, as HEVC does, or so much was lost that snapshots took
-  /// more than 16 times what was received, and 64 MiB.
+  /// The number of streams that the client holds and the container lacks until their next keyframe.
+  /// Either their backend is_stateful(), or so many packets were lost that repeated snapshots
+  /// exceeded 64 MiB plus 16 times the bytes received.
   [[nodiscard]] std::size_t waiting() const noexcept;
   [[nodiscard]] std::uint64_t bytes_written() const noexcept;
-  /// Writes the container's end.
+  /// Writes the index and end mark.
   Status finish();
 
  private:

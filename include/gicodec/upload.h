@@ -1,4 +1,4 @@
-// What of a texture in memory is to be copied to where a renderer samples it.
+// Upload: which parts of a texture in memory a renderer copies to its GPU texture.
 #pragma once
 
 #include <gicodec/api.h>
@@ -11,8 +11,8 @@
 
 namespace GICODEC_API gicodec {
 
-/// A box of records, and where its first one is in memory: what VkBufferImageCopy, the footprint of
-/// D3D12's CopyTextureRegion() and glTexSubImage3D() ask for.
+/// A box of records, and where it begins in memory: the arguments of VkBufferImageCopy, of D3D12's
+/// CopyTextureRegion() and of glTexSubImage3D().
 struct UploadBox {
   std::uint64_t offset = 0;               ///< bytes from the view's first record
   std::uint64_t row_pitch = 0;            ///< bytes
@@ -23,11 +23,10 @@ struct UploadBox {
   friend bool operator==(const UploadBox&, const UploadBox&) = default;
 };
 
-/// Replaces `out` by the boxes of these blocks, e.g. those that changed, guard bands included;
-/// blocks side by side in a row are one box. `blocks`: in any order, each at most once. `view` says
-/// how the texture lies in memory; where the layout is Tiling::blocks, the slices of an array
-/// follow one another. Keeps the capacity of `out`. Errors: view_too_small; block_out_of_range;
-/// out_of_memory.
+/// Replaces `out` by the boxes of these blocks, e.g. the changed ones, guard bands included. Joins
+/// neighbours in a row into one box. `blocks`: in any order, each at most once. `view`: the texture
+/// in memory; with Tiling::blocks its array slices follow one another. Keeps the capacity of `out`.
+/// Errors: view_too_small; block_out_of_range; out_of_memory.
 Status upload_boxes(const TextureDesc& desc, const ConstTextureView& view,
                     std::span<const std::uint32_t> blocks, std::vector<UploadBox>& out);
 

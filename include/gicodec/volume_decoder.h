@@ -20,19 +20,19 @@
 
 namespace GICODEC_API gicodec {
 
-/// As those of a Decoder, for every texture.
+/// As DecoderOptions, for every texture.
 struct VolumeDecoderOptions {
   DecodeLimits limits = {};                   ///< max_total_bytes: of all textures together
-  std::vector<const Backend*> backends = {};  ///< besides the built-in ones; during create() only
-  Threads threads = {};                       ///< per packet, and of read() of large textures
+  std::vector<const Backend*> backends = {};  ///< besides the built-in ones; for create() only
+  Threads threads = {};                       ///< per packet, and for read() of large textures
   Isa isa = best_isa();
   const std::atomic<bool>* cancel = nullptr;  ///< as DecoderOptions::cancel
   std::uint8_t first_texture = 0;             ///< as VolumeEncoderOptions::first_texture
 };
 
-/// Turns the packets of a VolumeEncoder back into the volume's textures; its page has an example.
-/// Safe on hostile bytes: a packet is either applied completely or not at all. One thread at a time
-/// per decoder. Movable; a moved-from decoder may only be destroyed or assigned to.
+/// Turns the packets of a VolumeEncoder (see its example) back into the volume's textures. Safe on
+/// hostile bytes: a packet is applied completely or not at all. One thread at a time per decoder. A
+/// moved-from decoder may only be destroyed or assigned to.
 class VolumeDecoder {
  public:
   /// Errors: those of validate() and of Decoder::create(); invalid_argument for texture ids beyond
@@ -43,27 +43,27 @@ class VolumeDecoder {
   VolumeDecoder& operator=(VolumeDecoder&&) noexcept;
   ~VolumeDecoder();
 
-  /// Applies the packets of an update, in their order; those that were applied last are passed
-  /// over. Nothing is applied unless they are of textures of this volume, each at most once, in
-  /// ascending order: unknown_texture, out_of_order. Other errors, those of Decoder::decode(),
-  /// leave the packet's texture and those behind it as they were: the same call again goes on
-  /// where memory was short; else they need a keyframe.
+  /// Applies the packets of an update in order; skips a packet that is the last one applied of its
+  /// texture. unknown_texture or out_of_order, and nothing applied, unless each packet is of a
+  /// texture of this volume, each texture at most once, ascending. Other errors are those of
+  /// Decoder::decode(): the failed packet and those behind it are not applied. After out_of_memory
+  /// the same call continues; after others these textures need a keyframe.
   Status decode(std::span<const Packet> update);
-  /// The same with one packet. What says which records exist comes before those of which it does.
+  /// The same with one packet. A packet of presence comes before those of the textures it is for.
   Status decode(std::span<const std::byte> packet);
 
-  /// Writes a texture, or some of its blocks, guard bands included; zeros where nothing was
-  /// received. unknown_texture, view_too_small, block_out_of_range.
+  /// Writes a texture, or some of its blocks, guard bands included; blocks that were not received
+  /// are zero. unknown_texture, view_too_small, block_out_of_range.
   Status read(std::uint8_t texture, TextureView view) const;
   Status read(std::uint8_t texture, TextureView view, std::span<const std::uint32_t> blocks) const;
   /// Blocks that the last decode() may have changed, ascending: those that a packet lists, or all
-  /// for a keyframe. Valid until the next one.
+  /// for a keyframe. Valid until the next decode().
   [[nodiscard]] std::span<const std::uint32_t> changed(std::uint8_t texture) const noexcept;
-  /// The decoder of a texture, to look at its records(); null for an unknown texture.
+  /// The decoder of a texture, e.g. for its records(); null for an unknown texture.
   [[nodiscard]] const Decoder* decoder(std::uint8_t texture) const noexcept;
 
   [[nodiscard]] const VolumeDesc& desc() const noexcept;
-  /// What is held at its worst, as limits.max_total_bytes counts it.
+  /// Peak bytes of all decoders, as limits.max_total_bytes counts them.
   [[nodiscard]] std::uint64_t memory() const noexcept;
 
  private:

@@ -18,23 +18,23 @@
 
 namespace GICODEC_API gicodec {
 
-/// As those of an Encoder, for every texture.
+/// As EncoderOptions, for every texture.
 struct VolumeEncoderOptions {
   std::string_view backend = "native";
   BackendSettings settings = {};
   std::uint32_t gop = 30;  ///< keyframes of all textures every `gop` updates; 0: only on request
-  /// The texture_id of the first texture's packets, e.g. VolumeEntry::first_texture; those of the
-  /// others follow.
+  /// The texture_id of the first texture's packets, e.g. VolumeEntry::first_texture; the following
+  /// textures have the following ids.
   std::uint8_t first_texture = 0;
-  /// EncoderOptions::max_error of each texture, 0 for what says which records exist; empty: nothing
-  /// is lost.
+  /// EncoderOptions::max_error of each texture, 0 for one that holds the presence of others; empty:
+  /// all are lossless.
   std::vector<float> max_errors = {};
-  std::vector<const Backend*> backends = {};  ///< besides the built-in ones; create() only
-  /// The backend of each texture in place of `backend`, null for none; empty: none of them.
+  std::vector<const Backend*> backends = {};  ///< besides the built-in ones; for create() only
+  /// The backend of each texture, null: `backend`; empty: `backend` for all.
   std::vector<const Backend*> texture_backends = {};
 };
 
-/// Turns successive contents of a volume of any kind into packets, one of each texture an update:
+/// Turns successive contents of a volume of any kind into updates, one packet per texture:
 ///
 ///     const VolumeDesc volume = *photon_volume(8, 64);
 ///     auto encoder = VolumeEncoder::create(volume);
@@ -49,31 +49,32 @@ struct VolumeEncoderOptions {
 /// encoder. A moved-from encoder may only be destroyed or assigned to.
 class VolumeEncoder {
  public:
-  /// Errors: those of validate() and of Encoder::create(); invalid_argument for a number of
-  /// max_errors or texture_backends that is not that of textures, or more texture ids than 256.
+  /// Errors: those of validate() and of Encoder::create(); invalid_argument if max_errors or
+  /// texture_backends is not empty and does not have one entry per texture, or for texture ids
+  /// beyond 255.
   [[nodiscard]] static Result<VolumeEncoder> create(const VolumeDesc& volume,
                                                     const VolumeEncoderOptions& options = {});
   VolumeEncoder(VolumeEncoder&&) noexcept;
   VolumeEncoder& operator=(VolumeEncoder&&) noexcept;
   ~VolumeEncoder();
 
-  /// Codes the selected blocks of `views`, one of each texture: the packets of all textures, in
-  /// the order in which decoders must apply them. A block of a bundled group goes into all of the
-  /// group's packets if it changed in one texture. A list of blocks holds for every group.
-  /// An error leaves all textures as before; with a stateful backend, such as hevc, the next
-  /// packets are keyframes. Errors: those of Encoder::encode(); invalid_argument for a number
-  /// of views that is not that of textures; presence_invalid.
+  /// Codes the selected blocks of `views`, one view per texture. Returns one packet per texture, in
+  /// the order in which decoders must apply them. A block of a bundled group that changed in one
+  /// texture goes into all packets of the group. A list of blocks applies to every group. An error
+  /// leaves all textures as before; with a stateful backend, such as hevc, the next packets are
+  /// keyframes. Errors: those of Encoder::encode(); invalid_argument for another number of views;
+  /// presence_invalid.
   [[nodiscard]] Result<std::vector<Packet>> encode(std::span<const ConstTextureView> views,
                                                    Selection selection = Selection::changed());
   /// The same with a selection for each group; invalid_argument for another number of them.
   [[nodiscard]] Result<std::vector<Packet>> encode(std::span<const ConstTextureView> views,
                                                    std::span<const Selection> selections);
 
-  /// Keyframes of all textures as they stand, see Encoder::snapshot().
+  /// One keyframe per texture, of its present state, see Encoder::snapshot().
   [[nodiscard]] Result<std::vector<Packet>> snapshot();
   /// Makes the next packets keyframes.
   void request_keyframe() noexcept;
-  /// Blocks of a group that Selection::changed() never selects, see Encoder::set_active().
+  /// Excludes inactive blocks of a group from Selection::changed(), see Encoder::set_active().
   /// unknown_group, mask_mismatch.
   Status set_active(std::uint8_t group, std::span<const std::uint8_t> active);
 
