@@ -101,7 +101,7 @@ class ProbeServer {
     }
     // Clients that joined or left, and why.
     for (const gicodec::ServerEvent& event : server_.take_events()) {
-      if (event.kind != gicodec::ServerEvent::Kind::dropped) continue;
+      if (event.type != gicodec::ServerEvent::Type::dropped) continue;
       for (const auto& [socket, connection] : connections_) {
         if (connection != event.connection) continue;
         transport_.close(socket);

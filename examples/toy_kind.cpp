@@ -17,10 +17,10 @@ static Record spark_record() {
   spark.bytes = 8;
   for (const char* name : {"x", "y", "z"}) {
     spark.components[spark.count] = {name, static_cast<std::uint16_t>(16 * spark.count), 16,
-                                     ComponentKind::unorm};
+                                     ComponentType::unorm};
     ++spark.count;
   }
-  spark.components[spark.count++] = {"heat", 48, 16, ComponentKind::sfloat};
+  spark.components[spark.count++] = {"heat", 48, 16, ComponentType::sfloat};
   return spark;
 }
 
@@ -28,8 +28,8 @@ static Record emitter_record() {
   Record emitter;
   emitter.bytes = 4;
   emitter.count = 2;
-  emitter.components[0] = {"first", 0, 16, ComponentKind::uint};
-  emitter.components[1] = {"pages", 16, 16, ComponentKind::uint};
+  emitter.components[0] = {"first", 0, 16, ComponentType::uint};
+  emitter.components[1] = {"pages", 16, 16, ComponentType::uint};
   return emitter;
 }
 

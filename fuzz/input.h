@@ -204,7 +204,7 @@ class Input {
       const char name = static_cast<char>('a' + record.count);
       record.components[record.count++] = {
           std::string_view(&name, 1), static_cast<std::uint16_t>(bit),
-          static_cast<std::uint8_t>(std::min(step, bytes * 8U - bit)), ComponentKind::opaque};
+          static_cast<std::uint8_t>(std::min(step, bytes * 8U - bit)), ComponentType::opaque};
     }
     return record;
   }

@@ -92,9 +92,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     fuzz::check(honest->consistent() && honest->statistics().failed_proofs == 0, "states agree");
     fuzz::check(honest->frame().volumes[0].textures[0].texels == texels, "texels are exact");
     for (const ServerEvent& event : server.take_events()) {
-      fuzz::check(event.kind != ServerEvent::Kind::dropped || event.connection == bad,
+      fuzz::check(event.type != ServerEvent::Type::dropped || event.connection == bad,
                   "only the bad go");
-      if (event.kind != ServerEvent::Kind::dropped) continue;
+      if (event.type != ServerEvent::Type::dropped) continue;
       server.disconnect(bad, now);
       bad = *server.connect(now);
     }

@@ -22,7 +22,7 @@ namespace gicodec::test {
 /// name bricks.
 inline constexpr std::uint8_t kKindScenes = 201;
 
-inline Record bits(std::initializer_list<std::uint8_t> widths, ComponentKind kind) {
+inline Record bits(std::initializer_list<std::uint8_t> widths, ComponentType kind) {
   Record record;
   std::uint16_t at = 0;
   for (const std::uint8_t width : widths) {
@@ -53,7 +53,7 @@ inline VolumeDesc scene_volume(std::uint32_t slots) {
   light_of_brick.presence = Presence::mask;
   TextureGroup bricks;
   bricks.textures = {
-      {"occupancy", pool_texture(bits({32, 32}, ComponentKind::opaque), slots, {1, 1, 1}),
+      {"occupancy", pool_texture(bits({32, 32}, ComponentType::opaque), slots, {1, 1, 1}),
        Threshold::exact},
       {"up", light_of_brick},
       {"down", light_of_brick}};
@@ -62,7 +62,7 @@ inline VolumeDesc scene_volume(std::uint32_t slots) {
   bricks.rank = fullness;
 
   TextureDesc map;
-  map.record = bits({16, 16, 16, 16, 16, 16, 16, 16, 16, 16, 16, 16}, ComponentKind::uint);
+  map.record = bits({16, 16, 16, 16, 16, 16, 16, 16, 16, 16, 16, 16}, ComponentType::uint);
   map.grid = {3, 2, 1};
   map.block = {8, 8, 1};
   map.records = {19, 11, 1};
@@ -73,7 +73,7 @@ inline VolumeDesc scene_volume(std::uint32_t slots) {
 
   TextureGroup lights;
   lights.textures = {
-      {"lights", pool_texture(bits({32, 5, 11, 16}, ComponentKind::uint), 6, {1, 1, 1})}};
+      {"lights", pool_texture(bits({32, 5, 11, 16}, ComponentType::uint), 6, {1, 1, 1})}};
   lights.depends_on = 0;
   lights.dependencies = bricks_of;
   return {kKindScenes, {bricks, maps, lights}};

@@ -92,7 +92,7 @@ TEST(Record, PresetsOfTheSameBitsUnderOtherNumbersAreRefused) {
     EXPECT_FALSE(unnamed == info.record);
     Record other = info.record;
     other.components[0] = {"X", other.components[0].offset, other.components[0].bits,
-                           other.components[0].kind};
+                           other.components[0].type};
     EXPECT_FALSE(is_valid(other)) << info.name;
     other = info.record;
     other.bytes = static_cast<std::uint8_t>(other.bytes + 1);
@@ -112,7 +112,7 @@ Record record_of(std::uint8_t bytes, std::initializer_list<Component> components
 bool valid(std::uint8_t bytes, std::initializer_list<Component> components) {
   return is_valid(record_of(bytes, components));
 }
-constexpr auto kUint = ComponentKind::uint;
+constexpr auto kUint = ComponentType::uint;
 
 TEST(Record, EveryBitBelongsToExactlyOneComponent) {
   EXPECT_TRUE(valid(1, {{"a", 0, 8, kUint}}));
@@ -186,24 +186,24 @@ TEST(Record, NamesAreShortAndPlainAndOccurOnce) {
 }
 
 TEST(Record, KindsHaveTheirWidths) {
-  const auto of = [](ComponentKind kind, std::uint8_t bits) {
+  const auto of = [](ComponentType kind, std::uint8_t bits) {
     Record record = record_of(8, {{"a", 0, bits, kind}});
     if (bits < 32) {
       const auto rest = static_cast<std::uint8_t>(32 - bits);
-      record.components[record.count++] = {"b", bits, rest, ComponentKind::opaque};
+      record.components[record.count++] = {"b", bits, rest, ComponentType::opaque};
     }
     record.components[record.count++] = {"c", 32, 32, kUint};
     return is_valid(record);
   };
   for (std::uint8_t bits = 1; bits <= 32; ++bits) {
-    for (const auto kind : {ComponentKind::unorm, ComponentKind::snorm, ComponentKind::uint,
-                            ComponentKind::exponent, ComponentKind::opaque}) {
+    for (const auto kind : {ComponentType::unorm, ComponentType::snorm, ComponentType::uint,
+                            ComponentType::exponent, ComponentType::opaque}) {
       EXPECT_TRUE(of(kind, bits)) << int{bits};
     }
-    EXPECT_EQ(of(ComponentKind::sfloat, bits), bits == 16 || bits == 32) << int{bits};
-    EXPECT_EQ(of(ComponentKind::ufloat, bits), bits <= 11) << int{bits};
-    EXPECT_FALSE(of(static_cast<ComponentKind>(kComponentKinds), bits));
-    EXPECT_FALSE(of(static_cast<ComponentKind>(255), bits));
+    EXPECT_EQ(of(ComponentType::sfloat, bits), bits == 16 || bits == 32) << int{bits};
+    EXPECT_EQ(of(ComponentType::ufloat, bits), bits <= 11) << int{bits};
+    EXPECT_FALSE(of(static_cast<ComponentType>(kComponentTypes), bits));
+    EXPECT_FALSE(of(static_cast<ComponentType>(255), bits));
   }
 }
 
@@ -260,7 +260,7 @@ TEST(Record, EveryFieldButTheLayoutChangesTheDescriptionHash) {
   EXPECT_TRUE(changes([](auto& d) { d.record.format = Format::UNDEFINED; }));
   EXPECT_TRUE(changes([](auto& d) {
     d.record.format = Format::UNDEFINED;
-    d.record.components[0].kind = ComponentKind::opaque;
+    d.record.components[0].type = ComponentType::opaque;
   }));
   EXPECT_TRUE(changes([](auto& d) { d.grid = {2, 3, 5}; }));
   EXPECT_TRUE(changes([](auto& d) { d.block = {8, 2, 8}; }));

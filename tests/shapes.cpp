@@ -25,12 +25,12 @@ Record custom_record(Random& random, std::uint8_t bytes) {
   Record record;
   record.bytes = bytes;
   for (const auto& [offset, bits] : pieces) {
-    constexpr std::array kKinds{ComponentKind::unorm,  ComponentKind::snorm,
-                                ComponentKind::uint,   ComponentKind::opaque,
-                                ComponentKind::ufloat, ComponentKind::sfloat};
+    constexpr std::array kKinds{ComponentType::unorm,  ComponentType::snorm,
+                                ComponentType::uint,   ComponentType::opaque,
+                                ComponentType::ufloat, ComponentType::sfloat};
     auto kind = kKinds[random() % kKinds.size()];
-    if (kind == ComponentKind::ufloat && bits > 11) kind = ComponentKind::uint;
-    if (kind == ComponentKind::sfloat && bits != 16 && bits != 32) kind = ComponentKind::exponent;
+    if (kind == ComponentType::ufloat && bits > 11) kind = ComponentType::uint;
+    if (kind == ComponentType::sfloat && bits != 16 && bits != 32) kind = ComponentType::exponent;
     record.components[record.count] = {std::string("c").append(std::to_string(record.count)),
                                        static_cast<std::uint16_t>(offset),
                                        static_cast<std::uint8_t>(bits), kind};

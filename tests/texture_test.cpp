@@ -233,7 +233,7 @@ Record custom_64_bytes() {
   for (; record.count < 16; ++record.count) {
     record.components[record.count] = {"c" + std::to_string(record.count),
                                        static_cast<std::uint16_t>(32 * record.count), 32,
-                                       ComponentKind::uint};
+                                       ComponentType::uint};
   }
   return record;
 }

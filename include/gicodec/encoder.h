@@ -36,24 +36,24 @@ class Selection {
  public:
   /// Every block that differs from the mirror. Without set_active(), a block that was never sent
   /// and is all zero (as sent, under an error bound) does not count as different.
-  [[nodiscard]] static constexpr Selection changed() noexcept { return {Kind::changed, {}}; }
+  [[nodiscard]] static constexpr Selection changed() noexcept { return {Type::changed, {}}; }
   /// Every block.
-  [[nodiscard]] static constexpr Selection all() noexcept { return {Kind::all, {}}; }
+  [[nodiscard]] static constexpr Selection all() noexcept { return {Type::all, {}}; }
   /// These blocks, in any order, each at most once. An empty list gives an empty update.
   constexpr Selection(std::span<const std::uint32_t> blocks) noexcept  // NOLINT
-      : Selection(Kind::list, blocks) {}
+      : Selection(Type::list, blocks) {}
   constexpr Selection(const std::vector<std::uint32_t>& blocks) noexcept  // NOLINT
-      : Selection(Kind::list, blocks) {}
+      : Selection(Type::list, blocks) {}
 
-  enum class Kind : std::uint8_t { changed, all, list };
-  [[nodiscard]] constexpr Kind kind() const noexcept { return kind_; }
+  enum class Type : std::uint8_t { changed, all, list };
+  [[nodiscard]] constexpr Type type() const noexcept { return type_; }
   [[nodiscard]] constexpr std::span<const std::uint32_t> list() const noexcept { return blocks_; }
 
  private:
-  constexpr Selection(Kind kind, std::span<const std::uint32_t> blocks) noexcept
-      : blocks_(blocks), kind_(kind) {}
+  constexpr Selection(Type type, std::span<const std::uint32_t> blocks) noexcept
+      : blocks_(blocks), type_(type) {}
   std::span<const std::uint32_t> blocks_;
-  Kind kind_;
+  Type type_;
 };
 
 /// Turns successive contents of one texture into packets (Stengel et al. §3.3, §3.4). Holds the

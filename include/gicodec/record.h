@@ -44,7 +44,7 @@ enum class Format : std::uint32_t {
 };
 
 /// How the bits of a component are read. For error bounds, thresholds and tools only.
-enum class ComponentKind : std::uint8_t {
+enum class ComponentType : std::uint8_t {
   unorm = 0,
   snorm = 1,
   uint = 2,
@@ -53,7 +53,7 @@ enum class ComponentKind : std::uint8_t {
   exponent = 5,  ///< shared by the record's mantissas
   opaque = 6,    ///< bits without a numeric meaning
 };
-inline constexpr std::uint8_t kComponentKinds = 7;
+inline constexpr std::uint8_t kComponentTypes = 7;
 
 /// `bits` bits from bit `offset` on, of the little-endian record. Within one aligned 32-bit word.
 struct Component {
@@ -62,8 +62,8 @@ struct Component {
   constexpr Component() noexcept = default;
   /// Precondition: the name has at most kMaxName characters.
   constexpr Component(std::string_view label, std::uint16_t offset_in, std::uint8_t bits_in,
-                      ComponentKind kind_in) noexcept
-      : offset(offset_in), bits(bits_in), kind(kind_in) {
+                      ComponentType type_in) noexcept
+      : offset(offset_in), bits(bits_in), type(type_in) {
     for (std::size_t i = 0; i < label.size() && i < kMaxName; ++i) characters[i] = label[i];
   }
   [[nodiscard]] constexpr std::string_view name() const noexcept {
@@ -76,7 +76,7 @@ struct Component {
   std::array<char, kMaxName> characters{};  ///< A-Z, a-z, 0-9 and _, then zeros
   std::uint16_t offset = 0;
   std::uint8_t bits = 0;  ///< 1..32
-  ComponentKind kind = ComponentKind::unorm;
+  ComponentType type = ComponentType::unorm;
 };
 
 inline constexpr std::size_t kMaxComponents = 16;

@@ -100,7 +100,7 @@ struct ServerOptions {
 };
 
 struct ServerEvent {
-  enum class Kind : std::uint8_t {
+  enum class Type : std::uint8_t {
     joined,      ///< a new session
     resumed,     ///< a session continues over this connection
     viewpoint,   ///< the client sent a Viewpoint
@@ -108,7 +108,7 @@ struct ServerEvent {
     dropped,     ///< send take_messages(), then close the connection; see reason
     expired,     ///< a session without a connection ended; connection is 0
   };
-  Kind kind{};
+  Type type{};
   ConnectionId connection = 0;
   ClientId client = 0;           ///< 0 before the connection has a session
   Reason reason = Reason::left;  ///< why the server dropped it

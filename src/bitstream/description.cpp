@@ -13,7 +13,7 @@ void write_record(const Record& record, ByteWriter& writer) {
     writer.text(component.name());
     writer.varint(component.offset);
     writer.fixed(component.bits);
-    writer.fixed(static_cast<std::uint8_t>(component.kind));
+    writer.fixed(static_cast<std::uint8_t>(component.type));
   }
 }
 
@@ -33,7 +33,7 @@ Record read_record(ByteReader& reader) {
     const auto offset = static_cast<std::uint16_t>(reader.varint(kMaxRecordBytes * 8));
     const auto bits = reader.fixed<std::uint8_t>();
     record.components[c] = {name, offset, bits,
-                            static_cast<ComponentKind>(reader.fixed<std::uint8_t>())};
+                            static_cast<ComponentType>(reader.fixed<std::uint8_t>())};
   }
   if (reader.ok() && !is_valid(record)) reader.fail(Status::corrupt);
   return record;

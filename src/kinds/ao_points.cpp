@@ -14,7 +14,7 @@ namespace gicodec {
 namespace {
 
 Record point_record() noexcept {
-  using enum ComponentKind;
+  using enum ComponentType;
   return record_of({{"used", 1, opaque},
                     {"x", 5, unorm},
                     {"y", 5, unorm},
@@ -26,7 +26,7 @@ Record point_record() noexcept {
 
 // z crosses a 32-bit boundary, which components may not, and so is split.
 Record entry_record() noexcept {
-  using enum ComponentKind;
+  using enum ComponentType;
   return record_of({{"x", 13, uint},
                     {"y", 13, uint},
                     {"z_low", 6, uint},
@@ -36,7 +36,7 @@ Record entry_record() noexcept {
 }
 
 Record grid_record() noexcept {
-  using enum ComponentKind;
+  using enum ComponentType;
   return record_of({{"object", 32, uint},
                     {"mesh", 32, uint},
                     {"x", 32, sfloat},
@@ -53,7 +53,7 @@ Record grid_record() noexcept {
 }
 
 Record transform_record() noexcept {
-  using enum ComponentKind;
+  using enum ComponentType;
   return record_of({{"m00", 32, sfloat},
                     {"m01", 32, sfloat},
                     {"m02", 32, sfloat},

@@ -24,7 +24,7 @@ constexpr std::array<Format, 4> kFormats{
 
 /// Appends `count` components of `bits` bits, named by a letter and a number.
 void append_components(Record& record, char letter, std::uint8_t count, std::uint8_t bits,
-                       ComponentKind kind) {
+                       ComponentType kind) {
   for (std::uint8_t i = 0; i < count; ++i) {
     const char name[2] = {letter, static_cast<char>('0' + i)};
     record.components[record.count++] = {
@@ -35,20 +35,20 @@ void append_components(Record& record, char letter, std::uint8_t count, std::uin
 
 Record mask_record() {
   Record record;
-  append_components(record, 'm', 8, 32, ComponentKind::opaque);
+  append_components(record, 'm', 8, 32, ComponentType::opaque);
   return record;
 }
 
 Record blend_record() {
   Record record;
-  append_components(record, 'b', kMapBlends, 16, ComponentKind::uint);
-  append_components(record, 'w', kMapBlends, 8, ComponentKind::uint);
+  append_components(record, 'b', kMapBlends, 16, ComponentType::uint);
+  append_components(record, 'w', kMapBlends, 8, ComponentType::uint);
   return record;
 }
 
 Record hash_record() {
   Record record;
-  append_components(record, 'h', 2, 32, ComponentKind::opaque);
+  append_components(record, 'h', 2, 32, ComponentType::opaque);
   return record;
 }
 

@@ -10,7 +10,7 @@ namespace gicodec {
 namespace {
 
 Record photon_record(PhotonForm form) noexcept {
-  using enum ComponentKind;
+  using enum ComponentType;
   if (form == PhotonForm::halves) {
     return record_of({{"x", 16, unorm},
                       {"y", 16, unorm},
@@ -37,7 +37,7 @@ Record photon_record(PhotonForm form) noexcept {
 }
 
 Record batch_record() noexcept {
-  using enum ComponentKind;
+  using enum ComponentType;
   return record_of({{"x", 32, sfloat},
                     {"y", 32, sfloat},
                     {"z", 32, sfloat},

@@ -12,7 +12,7 @@ namespace gicodec {
 struct RecordPart {
   std::string_view name;
   std::uint8_t bits;
-  ComponentKind kind;
+  ComponentType kind;
 };
 
 /// A record of consecutive components from bit 0 on. Precondition: they fill whole bytes.

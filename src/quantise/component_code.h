@@ -46,16 +46,16 @@ inline void set_code(std::byte* record, const Component& component, std::size_t 
 }
 
 [[nodiscard]] constexpr bool is_float(const Component& component) noexcept {
-  return component.kind == ComponentKind::sfloat ||
-         (component.kind == ComponentKind::ufloat && component.bits >= 10);
+  return component.type == ComponentType::sfloat ||
+         (component.type == ComponentType::ufloat && component.bits >= 10);
 }
 /// Of 5 bits, but for floats of 32.
 [[nodiscard]] constexpr unsigned mantissa_bits(const Component& component) noexcept {
   if (component.bits == 32) return 23;
-  return component.bits - 5U - (component.kind == ComponentKind::sfloat ? 1U : 0U);
+  return component.bits - 5U - (component.type == ComponentType::sfloat ? 1U : 0U);
 }
 [[nodiscard]] constexpr std::uint32_t sign_bit(const Component& component) noexcept {
-  return component.kind == ComponentKind::sfloat ? 1U << (component.bits - 1U) : 0U;
+  return component.type == ComponentType::sfloat ? 1U << (component.bits - 1U) : 0U;
 }
 [[nodiscard]] constexpr std::uint32_t largest_code(const Component& component) noexcept {
   return static_cast<std::uint32_t>((std::uint64_t{1} << component.bits) - 1);
@@ -68,7 +68,7 @@ inline void set_code(std::byte* record, const Component& component, std::size_t 
 /// Codes of two's complement as distances go, and back.
 [[nodiscard]] constexpr std::uint32_t ordered(std::uint32_t code,
                                               const Component& component) noexcept {
-  return component.kind == ComponentKind::snorm ? code ^ 1U << (component.bits - 1U) : code;
+  return component.type == ComponentType::snorm ? code ^ 1U << (component.bits - 1U) : code;
 }
 
 /// Whether a component is off by no more than that many codes or ULP. Floats have to be of one sign

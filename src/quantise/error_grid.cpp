@@ -16,7 +16,7 @@ namespace {
 bool share_exponent(const Record& record) noexcept {
   const auto used = record.used();
   return std::any_of(used.begin(), used.end(),
-                     [](const auto& c) { return c.kind == ComponentKind::exponent; });
+                     [](const auto& c) { return c.type == ComponentType::exponent; });
 }
 
 /// What is held, moved by as much as what it was made of.
@@ -34,7 +34,7 @@ std::uint32_t followed(const Component& component, std::uint32_t code, std::uint
 bool valid_error(float max_error) noexcept { return std::isfinite(max_error) && max_error >= 0; }
 
 std::uint32_t error_units(const Component& component, float max_error) noexcept {
-  if (component.kind == ComponentKind::opaque || component.kind == ComponentKind::exponent)
+  if (component.type == ComponentType::opaque || component.type == ComponentType::exponent)
     return 0;
   double units = std::floor(max_error);
   if (max_error < 1) {
@@ -82,7 +82,7 @@ ErrorGrid::ErrorGrid(const Record& record, float max_error) noexcept : record_(r
     // Steps of 2·E + 1 make the fewest values, lower ones leave room to stay at what is held: noise
     // that is not much larger than the bound costs nothing then. Those of floats and of two's
     // complement have to divide the sign's place too.
-    axis.capped = !axis.is_float && component.kind != ComponentKind::snorm;
+    axis.capped = !axis.is_float && component.type != ComponentType::snorm;
     axis.step =
         axis.capped ? axis.error + (axis.error + 1) / 2 + 1 : std::bit_floor(2 * axis.error + 1);
     if (component.bits <= 16) axis.inverse = (std::uint64_t{1} << 32) / axis.step + 1;
@@ -113,7 +113,7 @@ void ErrorGrid::apply(std::span<std::byte> records, std::span<const std::byte> h
     bool comparable = before != nullptr;
     for (std::size_t i = 0; i < record_.count && shared && comparable; ++i) {
       const Component& c = record_.components[i];
-      comparable = c.kind != ComponentKind::exponent ||
+      comparable = c.type != ComponentType::exponent ||
                    code_of(record, c, bytes) == code_of(before, c, bytes);
     }
     for (std::size_t i = 0; i < record_.count; ++i) {

@@ -25,7 +25,7 @@ Status Encoder::State::encode(const ConstTextureView& view, Selection selection,
   const Pending pending({&texture, 1});
   Status status = texture->select(view, selection);
   if (status != Status::ok) return status;
-  if (selection.kind() == Selection::Kind::changed) texture->keep_changed(keyframe);
+  if (selection.type() == Selection::Type::changed) texture->keep_changed(keyframe);
   status = texture->write(texture->blocks(), keyframe);
   if (status != Status::ok) return status;
   if (texture->packet().size() > max_size) return Status::buffer_too_small;

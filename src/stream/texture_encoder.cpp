@@ -50,12 +50,12 @@ Status TextureEncoder::select(const ConstTextureView& texture, Selection selecti
   if (!view) return view.status();
   const bool told = desc().presence == Presence::all || !presence_.empty();
   if (!told) return Status::out_of_order;
-  if (selection.kind() == Selection::Kind::list) {
+  if (selection.type() == Selection::Type::list) {
     if (const Status status = select_list(selection.list()); status != Status::ok) return status;
   } else {
     blocks_.resize(stream_.size());
     std::iota(blocks_.begin(), blocks_.end(), 0U);
-    if (selection.kind() == Selection::Kind::changed && !active_.empty()) {
+    if (selection.type() == Selection::Type::changed && !active_.empty()) {
       std::erase_if(blocks_, [&](std::uint32_t block) { return active_[block] == 0; });
     }
   }

@@ -47,7 +47,7 @@ Status VolumeEncoder::State::select(std::size_t group, std::span<const ConstText
   }
   all.clear();
   for (const auto& texture : own) {
-    if (selection.kind() == Selection::Kind::changed) texture->keep_changed(keyframe);
+    if (selection.type() == Selection::Type::changed) texture->keep_changed(keyframe);
     if (!volume.groups[group].bundled) continue;
     merged.clear();
     std::set_union(all.begin(), all.end(), texture->blocks().begin(), texture->blocks().end(),

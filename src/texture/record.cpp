@@ -17,7 +17,7 @@ constexpr Record preset(Format format, std::uint8_t bytes,
 }
 
 /// Components of the same width, one after the other.
-constexpr Record row(Format format, std::string_view names, std::uint8_t bits, ComponentKind kind) {
+constexpr Record row(Format format, std::string_view names, std::uint8_t bits, ComponentType kind) {
   Record record;
   record.format = format;
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -28,13 +28,13 @@ constexpr Record row(Format format, std::string_view names, std::uint8_t bits, C
   return record;
 }
 
-constexpr auto unorm = ComponentKind::unorm;
-constexpr auto snorm = ComponentKind::snorm;
-constexpr auto uint = ComponentKind::uint;
-constexpr auto ufloat = ComponentKind::ufloat;
-constexpr auto sfloat = ComponentKind::sfloat;
-constexpr auto exponent = ComponentKind::exponent;
-constexpr auto opaque = ComponentKind::opaque;
+constexpr auto unorm = ComponentType::unorm;
+constexpr auto snorm = ComponentType::snorm;
+constexpr auto uint = ComponentType::uint;
+constexpr auto ufloat = ComponentType::ufloat;
+constexpr auto sfloat = ComponentType::sfloat;
+constexpr auto exponent = ComponentType::exponent;
+constexpr auto opaque = ComponentType::opaque;
 
 constexpr FormatInfo kFormats[] = {
     {"R8_UNORM", row(Format::R8_UNORM, "R", 8, unorm)},
@@ -89,13 +89,13 @@ bool is_name(std::string_view name) {
 bool fits(const Component& component, unsigned record_bits) {
   const unsigned first = component.offset, bits = component.bits;
   if (bits < 1 || bits > 32 || first % 32 + bits > 32 || first + bits > record_bits) return false;
-  switch (component.kind) {
-    case ComponentKind::sfloat:
+  switch (component.type) {
+    case ComponentType::sfloat:
       return bits == 16 || bits == 32;
-    case ComponentKind::ufloat:
+    case ComponentType::ufloat:
       return bits <= 11;
     default:
-      return static_cast<std::uint8_t>(component.kind) < kComponentKinds;
+      return static_cast<std::uint8_t>(component.type) < kComponentTypes;
   }
 }
 
@@ -115,7 +115,7 @@ Record colored_direction(bool floats) noexcept {
   for (std::size_t i = 0; i < kNames.size(); ++i) {
     const Component& axis = direction.components[i];
     both.components[both.count++] = {
-        kNames[i], static_cast<std::uint16_t>(8 * color.bytes + axis.offset), axis.bits, axis.kind};
+        kNames[i], static_cast<std::uint16_t>(8 * color.bytes + axis.offset), axis.bits, axis.type};
   }
   return both;
 }
@@ -141,7 +141,7 @@ bool is_valid(const Record& record) noexcept {
     if (!fits(component, record_bits) || !is_name(component.name())) return false;
     // No characters may follow the name's end: equal records have equal bytes.
     if (!(component ==
-          Component(component.name(), component.offset, component.bits, component.kind))) {
+          Component(component.name(), component.offset, component.bits, component.type))) {
       return false;
     }
     for (std::size_t other = 0; other < c; ++other) {

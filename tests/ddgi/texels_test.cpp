@@ -22,7 +22,7 @@ TEST(Ufloat, EveryCodeSurvives) {
     for (std::uint32_t code = 0; code < finite; ++code) {
       ASSERT_EQ(to_ufloat(from_ufloat(code, bits), bits), code) << bits;
       // The value is the one that dumps show.
-      const Component component("R", 0, static_cast<std::uint8_t>(bits), ComponentKind::ufloat);
+      const Component component("R", 0, static_cast<std::uint8_t>(bits), ComponentType::ufloat);
       ASSERT_EQ(std::bit_cast<float>(tools::to_sample(tools::SampleType::float32, component, code)),
                 from_ufloat(code, bits));
     }

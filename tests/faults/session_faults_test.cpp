@@ -157,7 +157,7 @@ class World {
     auto events = fault_([&] { return server_->take_events(); });
     for (const ServerEvent& event : server_->take_events()) events.push_back(event);
     for (const ServerEvent& event : events) {
-      if (event.kind != ServerEvent::Kind::dropped || event.reason == Reason::replaced) continue;
+      if (event.type != ServerEvent::Type::dropped || event.reason == Reason::replaced) continue;
       EXPECT_TRUE(fault_.failed());
       EXPECT_EQ(event.reason, Reason::exhausted);
       for (auto& [id, player] : players_) {

@@ -94,7 +94,7 @@ class Scene {
     bool dropped = false;
     for (const ServerEvent& event : server_->take_events()) {
       dropped =
-          dropped || (event.kind == ServerEvent::Kind::dropped && event.connection == *connection_);
+          dropped || (event.type == ServerEvent::Type::dropped && event.connection == *connection_);
     }
     EXPECT_TRUE((here && !dropped) || fault_.failed());
     if (!here || dropped) connect();

@@ -108,10 +108,10 @@ inline std::vector<Blocks> block_textures() {
   Record own;
   own.bytes = 6;
   own.count = 4;
-  own.components[0] = {"r", 0, 11, ComponentKind::ufloat};
-  own.components[1] = {"b", 22, 10, ComponentKind::ufloat};
-  own.components[2] = {"g", 11, 11, ComponentKind::ufloat};
-  own.components[3] = {"flags_2", 32, 16, ComponentKind::opaque};
+  own.components[0] = {"r", 0, 11, ComponentType::ufloat};
+  own.components[1] = {"b", 22, 10, ComponentType::ufloat};
+  own.components[2] = {"g", 11, 11, ComponentType::ufloat};
+  own.components[3] = {"flags_2", 32, 16, ComponentType::opaque};
   TextureDesc bricks =
       with(Format::R16_SFLOAT, Space::grid, {3, 2, 2}, {4, 4, 2}, Model::continuous, Presence::all);
   bricks.records = {10, 8, 3};

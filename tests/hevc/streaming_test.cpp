@@ -39,7 +39,7 @@ std::optional<Reason> refusal_of_shared(Server& server) {
   const ConnectionId connection = *server.connect(0);
   server.receive(connection, *client.hello(), 0);
   for (const ServerEvent& event : server.take_events()) {
-    if (event.kind == ServerEvent::Kind::dropped) return event.reason;
+    if (event.type == ServerEvent::Type::dropped) return event.reason;
   }
   server.drop(connection, Reason::dismissed);
   static_cast<void>(server.take_events());

@@ -289,7 +289,7 @@ TEST(NativeHead, MoreThanEightPlanes) {
   Record record;
   for (const char* name : {"a", "b", "c", "d", "e", "f", "g", "h", "i", "j", "k", "l"}) {
     record.components[record.count] = {name, static_cast<std::uint16_t>(8 * record.bytes), 8,
-                                       ComponentKind::uint};
+                                       ComponentType::uint};
     ++record.count;
     ++record.bytes;
   }

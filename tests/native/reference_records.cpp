@@ -33,7 +33,7 @@ class Records {
         noise_(count_, 0),
         error_(count_, std::array<Number, 4>{}) {
     for (unsigned c = 0; c < count_ && exponent_ < 0; ++c) {
-      if (kind(c) == ComponentKind::exponent && bits(c) <= 5) exponent_ = static_cast<int>(c);
+      if (kind(c) == ComponentType::exponent && bits(c) <= 5) exponent_ = static_cast<int>(c);
     }
     if (exponent_ >= 0) order_.push_back(static_cast<unsigned>(exponent_));
     std::vector<unsigned> rest(count_);
@@ -131,22 +131,22 @@ class Records {
   [[nodiscard]] std::size_t key(const Components& previous) const {
     Number key = 0;
     for (unsigned c = 0; c < count_; ++c) {
-      if (kind(c) == ComponentKind::snorm) key = (16 * key + previous[c] % 16) % 256;
+      if (kind(c) == ComponentType::snorm) key = (16 * key + previous[c] % 16) % 256;
     }
     return static_cast<std::size_t>(key);
   }
   [[nodiscard]] unsigned bits(unsigned c) const { return record_.components[c].bits; }
-  [[nodiscard]] ComponentKind kind(unsigned c) const { return record_.components[c].kind; }
+  [[nodiscard]] ComponentType kind(unsigned c) const { return record_.components[c].type; }
   [[nodiscard]] bool mantissa(unsigned c) const {
-    return exponent_ >= 0 && kind(c) == ComponentKind::ufloat && bits(c) < 10;
+    return exponent_ >= 0 && kind(c) == ComponentType::ufloat && bits(c) < 10;
   }
   [[nodiscard]] bool linear(unsigned c) const {
     return mantissa(c) ||
-           (bits(c) <= 16 && (kind(c) == ComponentKind::unorm || kind(c) == ComponentKind::uint));
+           (bits(c) <= 16 && (kind(c) == ComponentType::unorm || kind(c) == ComponentType::uint));
   }
   [[nodiscard]] bool code(unsigned c) const {
-    return !linear(c) && bits(c) <= 16 && kind(c) != ComponentKind::opaque &&
-           kind(c) != ComponentKind::exponent;
+    return !linear(c) && bits(c) <= 16 && kind(c) != ComponentType::opaque &&
+           kind(c) != ComponentType::exponent;
   }
   [[nodiscard]] Number a(unsigned c, const Components& values) const {
     return values[c] << (mantissa(c) ? values[static_cast<std::size_t>(exponent_)] : 0);
@@ -240,7 +240,7 @@ class Records {
       const unsigned a = order_[i];
       if (bits(a) != b || here.now[a] == here.previous[a]) continue;
       if (is(here.now[a], 1, a)) return true;
-      if (kind(c) == ComponentKind::sfloat && is(here.now[a] ^ Number{1} << (b - 1), 2, a)) {
+      if (kind(c) == ComponentType::sfloat && is(here.now[a] ^ Number{1} << (b - 1), 2, a)) {
         return true;
       }
     }

@@ -138,7 +138,7 @@ class Scale {
   explicit Scale(const Record& record)
       : record_(record),
         directed_(record.count > 4),
-        floats_(record.components[3].kind != ComponentKind::exponent),
+        floats_(record.components[3].type != ComponentType::exponent),
         color_(directed_ ? kFloats : kHalves) {}
 
   [[nodiscard]] bool floats() const { return floats_; }

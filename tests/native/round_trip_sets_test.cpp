@@ -56,7 +56,7 @@ test::UpdateCase points_on_walls(std::uint32_t count, bool sorted) {
                                           : record.components[record.count - 1U].offset +
                                                 record.components[record.count - 1U].bits;
     record.components[record.count++] = {name, static_cast<std::uint16_t>(at),
-                                         static_cast<std::uint8_t>(bits), ComponentKind::unorm};
+                                         static_cast<std::uint8_t>(bits), ComponentType::unorm};
   }
   TextureDesc desc = pool_texture(record, 1, {64, 64, 1});
   desc.model = Model::unordered;

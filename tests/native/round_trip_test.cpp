@@ -187,7 +187,7 @@ TEST(NativeRoundTrip, OtherRecordsAndShapes) {
   for (std::uint8_t count = 1; count <= kMaxComponents; ++count) {
     record.components[count - 1U] = {std::string_view("abcdefghijklmnop").substr(count - 1U, 1),
                                      static_cast<std::uint16_t>(32 * (count - 1)), 32,
-                                     ComponentKind::uint};
+                                     ComponentType::uint};
     record.count = count;
     record.bytes = static_cast<std::uint8_t>(4 * count);
     for (const bool keyframe : {true, false}) {

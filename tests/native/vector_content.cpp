@@ -113,8 +113,8 @@ std::uint32_t edge(Random& random, const Component& component, bool dull) {
                                0x4B000000U, 0x33800000U};
   if (component.bits == 32) return kFloats[random() % kFloats.size()];
   const std::uint32_t most = (1U << component.bits) - 1;
-  if (component.kind == ComponentKind::exponent) return pick(random, 0, most);
-  if (component.kind == ComponentKind::ufloat && dull) return 0;
+  if (component.type == ComponentType::exponent) return pick(random, 0, most);
+  if (component.type == ComponentType::ufloat && dull) return 0;
   const std::array codes{0U, 1U, most / 2, most / 2 + 1, most, pick(random, 0, most)};
   return codes[random() % codes.size()];
 }

@@ -74,7 +74,7 @@ class Attack : public PathToServer {
     advance(took);
     server().report_update_time(took, kInterval);
     for (const ServerEvent& event : server().take_events()) {
-      if (event.kind != ServerEvent::Kind::dropped) continue;
+      if (event.type != ServerEvent::Type::dropped) continue;
       ++dropped[event.reason];
       for (Hostile& one : hostile_) {
         if (one.connection == event.connection) leave(one);

@@ -71,7 +71,7 @@ class ServerTest : public testing::Test {
   std::optional<Reason> dropped(ConnectionId connection) {
     std::optional<Reason> reason;
     for (const ServerEvent& event : server_->take_events()) {
-      if (event.kind == ServerEvent::Kind::dropped && event.connection == connection)
+      if (event.type == ServerEvent::Type::dropped && event.connection == connection)
         reason = event.reason;
     }
     if (!reason) return reason;

@@ -213,7 +213,7 @@ TEST_F(ServerTest, ForgetsWhoDoesNotComeBack) {
   now_ += 6;
   server_->tick(now_);
   const auto events = server_->take_events();
-  EXPECT_EQ(events.back().kind, ServerEvent::Kind::expired);
+  EXPECT_EQ(events.back().type, ServerEvent::Type::expired);
   connection = join(client);
   update();
   exchange(connection, client);
@@ -298,7 +298,7 @@ TEST_F(ServerTest, ATicketDiesWithItsSession) {
   say(connection, Hello{1, ticket});
   server_->disconnect(connection, now_);
   for (const ServerEvent& event : server_->take_events()) {
-    EXPECT_NE(event.kind, ServerEvent::Kind::resumed);
+    EXPECT_NE(event.type, ServerEvent::Type::resumed);
   }
 }
 

@@ -74,7 +74,7 @@ class Peer {
     NetEvent event;
     const double end = now() + kPatience;
     while (now() < end) {
-      if (net_.next(event, 50) && event.kind == NetEvent::Kind::opened) return;
+      if (net_.next(event, 50) && event.type == NetEvent::Type::opened) return;
     }
     tools::fail(tools::Exit::io, "no connection");
   }
@@ -93,11 +93,11 @@ class Peer {
     const double end = now() + seconds;
     while (now() < end) {
       if (!net_.next(event, 20)) continue;
-      if (event.kind == NetEvent::Kind::closed) {
+      if (event.type == NetEvent::Type::closed) {
         open_ = false;
         return std::nullopt;
       }
-      if (event.kind != NetEvent::Kind::received) continue;
+      if (event.type != NetEvent::Type::received) continue;
       const auto message = read_message(event.message);
       if (!message) continue;
       if (const auto* goodbye = std::get_if<Goodbye>(&*message)) return goodbye->reason;

@@ -39,7 +39,7 @@ void serve(const std::string& port_file) {
   NetEvent event;
   const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(5);
   while (std::chrono::steady_clock::now() < end) {
-    if (!net.next(event, 100) || event.kind != NetEvent::Kind::received) continue;
+    if (!net.next(event, 100) || event.type != NetEvent::Type::received) continue;
     const auto message = read_message(event.message);
     if (!message) continue;
     if (const auto* hello = std::get_if<Hello>(&*message)) net.send(event.link, {welcome(*hello)});

@@ -56,7 +56,7 @@ TEST(EnetLinks, WindowsStayAsAskedForWhoeverComesAndGoes) {
   Enet::Link seen = nullptr;
   const auto serve = [&](std::chrono::milliseconds time) {
     for (const auto end = Clock::now() + time; Clock::now() < end;) {
-      if (server.next(event, 1) && event.kind == NetEvent::Kind::opened && seen == nullptr) {
+      if (server.next(event, 1) && event.type == NetEvent::Type::opened && seen == nullptr) {
         seen = event.link.enet;
       }
       while (client.next(event, 0) || other.next(event, 0)) {

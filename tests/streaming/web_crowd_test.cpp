@@ -90,8 +90,8 @@ TEST(WebCrowd, TheOldestHandshakesMakeRoomAndAnHonestClientGetsIn) {
   bool is_in = false, is_seen = false;
   EXPECT_TRUE(waits_until([&] {
     NetEvent event;
-    while (client->next(event)) is_in = is_in || event.kind == NetEvent::Kind::opened;
-    while (server->next(event)) is_seen = is_seen || event.kind == NetEvent::Kind::opened;
+    while (client->next(event)) is_in = is_in || event.type == NetEvent::Type::opened;
+    while (server->next(event)) is_seen = is_seen || event.type == NetEvent::Type::opened;
     return is_in && is_seen;
   }));
   for (const int link : links) ::close(link);

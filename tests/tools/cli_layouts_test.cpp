@@ -20,8 +20,8 @@ constexpr const char* kNote = "note";
 
 /// A NaN with a payload, or nothing for a component that has none.
 std::optional<std::uint32_t> nan_of(const Component& component) {
-  if (component.kind == ComponentKind::sfloat) return component.bits == 16 ? 0xFD01U : 0x7FA01234U;
-  if (component.kind == ComponentKind::ufloat) return max_code(component);
+  if (component.type == ComponentType::sfloat) return component.bits == 16 ? 0xFD01U : 0x7FA01234U;
+  if (component.type == ComponentType::ufloat) return max_code(component);
   return std::nullopt;
 }
 

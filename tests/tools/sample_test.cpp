@@ -13,14 +13,14 @@
 namespace gicodec::tools {
 namespace {
 
-constexpr Component kTenBits{"R", 20, 10, ComponentKind::unorm};
-constexpr Component kAlpha{"A", 30, 2, ComponentKind::unorm};
-constexpr Component kByte{"R", 0, 8, ComponentKind::unorm};
-constexpr Component kSixteenBits{"R", 0, 16, ComponentKind::unorm};
-constexpr Component kHalf{"R", 0, 16, ComponentKind::sfloat};
-constexpr Component kFloat{"R", 0, 32, ComponentKind::sfloat};
-constexpr Component kUnsigned11{"R", 0, 11, ComponentKind::ufloat};
-constexpr Component kUnsigned10{"B", 22, 10, ComponentKind::ufloat};
+constexpr Component kTenBits{"R", 20, 10, ComponentType::unorm};
+constexpr Component kAlpha{"A", 30, 2, ComponentType::unorm};
+constexpr Component kByte{"R", 0, 8, ComponentType::unorm};
+constexpr Component kSixteenBits{"R", 0, 16, ComponentType::unorm};
+constexpr Component kHalf{"R", 0, 16, ComponentType::sfloat};
+constexpr Component kFloat{"R", 0, 32, ComponentType::sfloat};
+constexpr Component kUnsigned11{"R", 0, 11, ComponentType::ufloat};
+constexpr Component kUnsigned10{"B", 22, 10, ComponentType::ufloat};
 
 double value_of_half(std::uint32_t bits) { return std::bit_cast<float>(widen_half(bits)); }
 
@@ -165,7 +165,7 @@ TEST(Sample, ValuesThatShareNoExponent) {
 }
 
 TEST(Sample, ChannelsHoldEveryCodeOrAreRefused) {
-  const auto types = [](ComponentKind kind, std::uint8_t bits) {
+  const auto types = [](ComponentType kind, std::uint8_t bits) {
     Record record;
     record.bytes = 4;
     record.count = 1;
@@ -176,17 +176,17 @@ TEST(Sample, ChannelsHoldEveryCodeOrAreRefused) {
     }
     return text;
   };
-  EXPECT_EQ(types(ComponentKind::unorm, 8), "UHF");
-  EXPECT_EQ(types(ComponentKind::unorm, 10), "UHF");
-  EXPECT_EQ(types(ComponentKind::unorm, 11), "UF");
-  EXPECT_EQ(types(ComponentKind::unorm, 16), "UF");
-  EXPECT_EQ(types(ComponentKind::unorm, 17), "U");
-  EXPECT_EQ(types(ComponentKind::unorm, 32), "U");
-  EXPECT_EQ(types(ComponentKind::sfloat, 16), "UHF");
-  EXPECT_EQ(types(ComponentKind::sfloat, 32), "UF");
-  EXPECT_EQ(types(ComponentKind::ufloat, 11), "UHF");
-  for (const auto kind : {ComponentKind::snorm, ComponentKind::uint, ComponentKind::exponent,
-                          ComponentKind::opaque}) {
+  EXPECT_EQ(types(ComponentType::unorm, 8), "UHF");
+  EXPECT_EQ(types(ComponentType::unorm, 10), "UHF");
+  EXPECT_EQ(types(ComponentType::unorm, 11), "UF");
+  EXPECT_EQ(types(ComponentType::unorm, 16), "UF");
+  EXPECT_EQ(types(ComponentType::unorm, 17), "U");
+  EXPECT_EQ(types(ComponentType::unorm, 32), "U");
+  EXPECT_EQ(types(ComponentType::sfloat, 16), "UHF");
+  EXPECT_EQ(types(ComponentType::sfloat, 32), "UF");
+  EXPECT_EQ(types(ComponentType::ufloat, 11), "UHF");
+  for (const auto kind : {ComponentType::snorm, ComponentType::uint, ComponentType::exponent,
+                          ComponentType::opaque}) {
     EXPECT_EQ(types(kind, 8), "U");
   }
 }

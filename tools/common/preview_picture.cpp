@@ -30,8 +30,8 @@ float value_of(const Component& component, std::uint32_t code) {
     return static_cast<float>(of) / static_cast<float>(max_code(component));
   };
   if (component.bits == 9) return static_cast<float>(code);
-  if (component.kind == ComponentKind::uint) return share(code);
-  if (component.kind == ComponentKind::snorm) return share(code ^ 1U << (component.bits - 1));
+  if (component.type == ComponentType::uint) return share(code);
+  if (component.type == ComponentType::snorm) return share(code ^ 1U << (component.bits - 1));
   return std::bit_cast<float>(to_sample(SampleType::float32, component, code));
 }
 
@@ -45,7 +45,7 @@ std::vector<float> values_of(const Dump& dump, std::size_t channels) {
     const std::byte* texel = &dump.texels[i * record.bytes];
     float scale = 1;
     for (const Component& component : record.used()) {
-      if (component.kind != ComponentKind::exponent) continue;
+      if (component.type != ComponentType::exponent) continue;
       const auto exponent = load_component(texel, record.bytes, component);
       scale = std::ldexp(1.0F, static_cast<int>(exponent) - 24);
     }
@@ -84,7 +84,7 @@ double automatic_scale(const std::vector<float>& values, double gamma) {
 
 std::vector<std::uint8_t> colour_pixels(const Dump& dump, const PreviewTuning& tuning) {
   const std::vector<float> values = values_of(dump, 3);
-  const bool codes = dump.info.desc.record.components[0].kind == ComponentKind::unorm;
+  const bool codes = dump.info.desc.record.components[0].type == ComponentType::unorm;
   const double gamma = tuning.gamma.value_or(codes ? kColourGamma : 1);
   const double scale =
       tuning.exposure ? std::exp2(*tuning.exposure) : automatic_scale(values, gamma);
@@ -156,7 +156,7 @@ void write_preview(const std::string& path, const Dump& dump, const PreviewTunin
                    Existing existing) {
   const Record& record = dump.info.desc.record;
   if (record.format == Format::UNDEFINED) return write_records(path, dump, existing);
-  if (record.components[0].kind == ComponentKind::opaque) {
+  if (record.components[0].type == ComponentType::opaque) {
     fail(
         Exit::bad_input,
         "{}: no picture is made of compressed blocks, {}; \"gicodec decode\" gives back files that "

@@ -12,13 +12,13 @@ namespace gicodec::tools {
 namespace {
 
 double share_of(const Component& component, std::uint32_t code) {
-  if (component.kind == ComponentKind::sfloat) {
+  if (component.type == ComponentType::sfloat) {
     const auto value = std::bit_cast<float>(to_sample(SampleType::float32, component, code));
     const double shown = std::abs(double{value});
     return std::isfinite(value) ? shown / (1 + shown) : 1;
   }
   const double most = std::exp2(component.bits) - 1;
-  if (component.kind == ComponentKind::snorm) code ^= 1U << (component.bits - 1);
+  if (component.type == ComponentType::snorm) code ^= 1U << (component.bits - 1);
   return code / most;
 }
 

@@ -17,7 +17,7 @@
 namespace gicodec::tools {
 namespace {
 
-constexpr std::array<const char*, kComponentKinds> kKinds = {
+constexpr std::array<const char*, kComponentTypes> kKinds = {
     "unorm", "snorm", "uint", "ufloat", "sfloat", "exponent", "opaque"};
 constexpr std::string_view kOffBy = "off by at most ", kRelatively = " relatively";
 
@@ -103,7 +103,7 @@ std::string record_text(const Record& record) {
   for (const Component& component : record.used()) {
     text += fmt::format("{} {} {} {}", &component == record.components.data() ? "" : ",",
                         component.name(), component.bits,
-                        kKinds[static_cast<std::size_t>(component.kind)]);
+                        kKinds[static_cast<std::size_t>(component.type)]);
   }
   return text;
 }

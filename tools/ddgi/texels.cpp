@@ -45,12 +45,12 @@ std::uint32_t word(const std::byte* texel) {
 
 /// A float component's code as a number, and the nearest code of one.
 float value_of(const Component& component, std::uint32_t code) {
-  if (component.kind == ComponentKind::ufloat) return from_ufloat(code, component.bits);
+  if (component.type == ComponentType::ufloat) return from_ufloat(code, component.bits);
   if (component.bits == 16) return from_half(static_cast<std::uint16_t>(code));
   return std::bit_cast<float>(code);
 }
 std::uint32_t code_of(const Component& component, float value) {
-  if (component.kind == ComponentKind::ufloat) return to_ufloat(value, component.bits);
+  if (component.type == ComponentType::ufloat) return to_ufloat(value, component.bits);
   if (component.bits == 16) return to_half(value);
   return std::bit_cast<std::uint32_t>(value);
 }
@@ -72,7 +72,7 @@ std::optional<Encoding> encoding_from_string(std::string_view name) noexcept {
 
 Encoding usual_encoding(Format format) noexcept {
   const FormatInfo* info = find_format(format);
-  const bool unorm = info != nullptr && info->record.components[0].kind == ComponentKind::unorm;
+  const bool unorm = info != nullptr && info->record.components[0].type == ComponentType::unorm;
   return unorm ? Encoding::gamma5 : Encoding::linear;
 }
 
@@ -90,7 +90,7 @@ std::string names_of(std::span<const Format> formats) {
 
 ColorTexels::ColorTexels(Format format, Encoding encoding) : record_(format), encoding_(encoding) {
   const Component& first = record_.components[0];
-  if (first.kind == ComponentKind::unorm) unit_ = static_cast<float>(tools::max_code(first));
+  if (first.type == ComponentType::unorm) unit_ = static_cast<float>(tools::max_code(first));
 }
 
 Vec3 ColorTexels::load(const std::byte* texel) const {
@@ -177,19 +177,19 @@ void store_texel(const Record& record, std::byte* texel, const std::array<float,
     const Component& component = record.components[i];
     const std::uint32_t most = tools::max_code(component);
     std::uint32_t code = 0;
-    switch (component.kind) {
-      case ComponentKind::unorm:
+    switch (component.type) {
+      case ComponentType::unorm:
         code = static_cast<std::uint32_t>(
             std::floor(saturate(values[i]) * static_cast<float>(most) + 0.5F));
         break;
-      case ComponentKind::snorm: {
+      case ComponentType::snorm: {
         const std::uint32_t positive = most / 2;
         const auto units = static_cast<float>(positive);
         const float rounded = std::floor(std::clamp(values[i], -1.0F, 1.0F) * units + 0.5F);
         code = static_cast<std::uint32_t>(static_cast<std::int32_t>(rounded)) & most;
         break;
       }
-      case ComponentKind::uint:
+      case ComponentType::uint:
         code = std::min(static_cast<std::uint32_t>(values[i]), most);
         break;
       default:

@@ -103,7 +103,7 @@ ChannelLayout default_channels(Format format) {
 }
 
 bool has_channel(const ChannelLayout& channels, const Component& component) noexcept {
-  if (component.kind == ComponentKind::exponent) return channels.exponent;
+  if (component.type == ComponentType::exponent) return channels.exponent;
   return channels.alpha || letter(component) != 'A';
 }
 
@@ -243,7 +243,7 @@ void fail_sample(const DumpInfo& info, const Component& component, SampleType ty
   constexpr std::array<const char*, 3> kFloats = {"R32_SFLOAT", "R32G32_SFLOAT",
                                                   "R32G32B32A32_SFLOAT"};
   const std::string value = sample_text(type, sample);
-  if (component.kind == ComponentKind::unorm && type != SampleType::uint32) {
+  if (component.type == ComponentType::unorm && type != SampleType::uint32) {
     fail(Exit::bad_input,
          "{}: channel {}, {}: {} is not n/{}, so it is no {}-bit code; --vk-format {} keeps such "
          "values as they are",

@@ -179,7 +179,7 @@ Dump read_image(const std::string& path, ImageKind kind, const Hints& hints, boo
     fail(Exit::bad_input, "{}: only EXR files can hold values that share an exponent", path);
   }
   for (const Component& component : format.record.used()) {
-    if (stored.scaled && component.kind != ComponentKind::unorm) {
+    if (stored.scaled && component.type != ComponentType::unorm) {
       fail(Exit::bad_input, "{}: integer samples do not hold {}", path, format.name);
     }
     if (stored.scaled && component.bits > 8 * stored.bytes) {

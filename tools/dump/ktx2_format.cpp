@@ -28,19 +28,19 @@ std::uint32_t channel_of(char component) {
 Sample sample_of(const Component& component) {
   const std::uint32_t channel = channel_of(letter(component)), most = max_code(component);
   const Sample plain{component.offset, component.bits, channel, 0, most};
-  switch (component.kind) {
-    case ComponentKind::unorm:
+  switch (component.type) {
+    case ComponentType::unorm:
       return plain;
-    case ComponentKind::snorm:
+    case ComponentType::snorm:
       return {plain.offset, plain.bits, channel | kSigned, ~(most >> 1) + 1, most >> 1};
-    case ComponentKind::uint:
+    case ComponentType::uint:
       return {plain.offset, plain.bits, channel, 0, 1};
-    case ComponentKind::ufloat:
+    case ComponentType::ufloat:
       return {plain.offset, plain.bits, channel | kFloat, 0, kOne};
-    case ComponentKind::sfloat:
+    case ComponentType::sfloat:
       return {plain.offset, plain.bits, channel | kFloat | kSigned, kMinusOne, kOne};
-    case ComponentKind::exponent:
-    case ComponentKind::opaque:
+    case ComponentType::exponent:
+    case ComponentType::opaque:
       return plain;
   }
   return plain;

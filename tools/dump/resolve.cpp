@@ -225,7 +225,7 @@ class Resolver {
     std::vector<FoundChannel> unused = found;
     for (std::size_t i = 0; i < format.record.count; ++i) {
       const Component& component = format.record.components[i];
-      if (component.kind == ComponentKind::exponent && !info_.channels.exponent) continue;
+      if (component.type == ComponentType::exponent && !info_.channels.exponent) continue;
       std::string wanted{letter(component)};
       if (!hints_.channels.empty()) {
         const auto mapped = hints_.channels.find(letter(component));

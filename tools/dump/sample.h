@@ -61,7 +61,7 @@ enum class SampleType : std::uint8_t { uint32, half, float32 };
 /// True if components of the record share an exponent.
 [[nodiscard]] constexpr bool has_exponent(const Record& record) noexcept {
   for (const Component& component : record.used()) {
-    if (component.kind == ComponentKind::exponent) return true;
+    if (component.type == ComponentType::exponent) return true;
   }
   return false;
 }
@@ -73,11 +73,11 @@ enum class SampleType : std::uint8_t { uint32, half, float32 };
   if (type == SampleType::uint32) return true;
   if (has_exponent(record)) return false;
   const bool half = type == SampleType::half;
-  switch (component.kind) {
-    case ComponentKind::unorm:
+  switch (component.type) {
+    case ComponentType::unorm:
       return component.bits <= (half ? 10 : 16);
-    case ComponentKind::ufloat:
-    case ComponentKind::sfloat:
+    case ComponentType::ufloat:
+    case ComponentType::sfloat:
       return !half || component.bits <= 16;
     default:
       return false;
@@ -90,13 +90,13 @@ enum class SampleType : std::uint8_t { uint32, half, float32 };
                                              std::uint32_t code) noexcept {
   if (type == SampleType::uint32) return code;
   const bool half = type == SampleType::half;
-  if (component.kind == ComponentKind::unorm) {
+  if (component.type == ComponentType::unorm) {
     const float value = static_cast<float>(code) / static_cast<float>(max_code(component));
     return half ? Imath::half(value).bits() : std::bit_cast<std::uint32_t>(value);
   }
   if (component.bits == 32) return code;
   const std::uint32_t pattern =
-      component.kind == ComponentKind::ufloat ? code << (15 - component.bits) : code;
+      component.type == ComponentType::ufloat ? code << (15 - component.bits) : code;
   return half ? pattern : widen_half(pattern);
 }
 
@@ -105,7 +105,7 @@ enum class SampleType : std::uint8_t { uint32, half, float32 };
                                                           const Component& component,
                                                           std::uint32_t sample) noexcept {
   std::uint32_t code = sample;
-  if (type != SampleType::uint32 && component.kind == ComponentKind::unorm) {
+  if (type != SampleType::uint32 && component.type == ComponentType::unorm) {
     const float value =
         std::bit_cast<float>(type == SampleType::half ? widen_half(sample) : sample);
     if (!(value >= 0 && value <= 1)) return std::nullopt;
@@ -116,7 +116,7 @@ enum class SampleType : std::uint8_t { uint32, half, float32 };
       if (!narrow) return std::nullopt;
       code = *narrow;
     }
-    if (component.kind == ComponentKind::ufloat) code >>= 15 - component.bits;
+    if (component.type == ComponentType::ufloat) code >>= 15 - component.bits;
   }
   if (code > max_code(component) || to_sample(type, component, code) != sample) {
     return std::nullopt;

@@ -134,7 +134,7 @@ void print_text(const Compared& compared) {
   if (difference.same()) return;
   for (std::size_t i = 0; i < difference.channels.size(); ++i) {
     const ChannelDifference& channel = difference.channels[i];
-    const bool floating = record.components[i].kind == ComponentKind::sfloat;
+    const bool floating = record.components[i].type == ComponentType::sfloat;
     print("  channel {}: {} texels, at most {} {}\n", channel.name, channel.texels,
           channel.max_distance, floating ? "ULP" : "codes");
   }

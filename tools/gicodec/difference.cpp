@@ -17,8 +17,8 @@ namespace {
 /// Maps float patterns to integers in the order of values; −0 is just before +0.
 std::int64_t ordered(const Component& component, std::uint32_t code) {
   const std::uint32_t sign = 1U << (component.bits - 1);
-  if (component.kind == ComponentKind::snorm) return std::int64_t{code ^ sign};
-  if (component.kind != ComponentKind::sfloat) return code;
+  if (component.type == ComponentType::snorm) return std::int64_t{code ^ sign};
+  if (component.type != ComponentType::sfloat) return code;
   return (code & sign) == 0 ? std::int64_t{code} : -1 - std::int64_t{code ^ sign};
 }
 
@@ -86,7 +86,7 @@ class Comparison {
       ChannelDifference& channel = result_.channels[i];
       ++channel.texels;
       channel.max_distance = std::max(channel.max_distance, distance);
-      if (component.kind == ComponentKind::unorm) {
+      if (component.type == ComponentType::unorm) {
         channel.squared += static_cast<double>(distance) * static_cast<double>(distance);
       }
       // Notes the first channel beyond the bound, rather than one before it that only differs.
@@ -106,7 +106,7 @@ class Comparison {
     std::uint64_t samples = 0;
     for (std::size_t i = 0; i < record_.count; ++i) {
       const Component& component = record_.components[i];
-      if (component.kind != ComponentKind::unorm) return;
+      if (component.type != ComponentType::unorm) return;
       if (letter(component) == 'A') continue;
       const double peak = max_code(component);
       squared += result_.channels[i].squared / (peak * peak);
@@ -129,11 +129,11 @@ bool says_how_it_is_stored(const std::string& name) {
 }
 
 std::string value_text(const Record& record, const Component& component, std::uint32_t code) {
-  if (component.kind != ComponentKind::sfloat && component.kind != ComponentKind::unorm) {
+  if (component.type != ComponentType::sfloat && component.type != ComponentType::unorm) {
     return fmt::format("{}", code);
   }
   const auto type = component.bits == 32 ? SampleType::float32 : SampleType::half;
-  if (component.kind == ComponentKind::sfloat) {
+  if (component.type == ComponentType::sfloat) {
     return fmt::format("{} (0x{:0{}X})", sample_text(type, code), code, component.bits / 4);
   }
   return can_hold(SampleType::half, component, record)

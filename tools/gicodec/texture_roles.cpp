@@ -17,7 +17,7 @@ bool is_state(const TextureDesc& desc) {
 
 bool counts_or_names(const Record& record) {
   return std::ranges::any_of(record.used(), [](const Component& component) {
-    return component.kind == ComponentKind::uint || component.kind == ComponentKind::opaque;
+    return component.type == ComponentType::uint || component.type == ComponentType::opaque;
   });
 }
 

@@ -54,7 +54,7 @@ tools::DumpInfo info_of(const Shown& texture, const VolumeShape& shape) {
   const Record& record = texture.desc.record;
   tools::DumpInfo info = tools::make_info(texture.desc);
   // Alpha of unorm is 0 everywhere.
-  if (texture.encoding && record.components[0].kind == ComponentKind::unorm)
+  if (texture.encoding && record.components[0].type == ComponentType::unorm)
     info.channels.alpha = false;
   set_attribute(info.attributes, {tools::kOriginAttribute, "v3f", text(shape.origin)});
   set_attribute(info.attributes, {tools::kSpacingAttribute, "v3f", text(shape.spacing)});

@@ -110,8 +110,8 @@ Link ClientLink::connect(Net& net) {
   NetEvent event;
   while (!stop_ && now() < end) {
     if (!net.next(event, 10) || event.link != link) continue;
-    if (event.kind == NetEvent::Kind::opened) return link;
-    if (event.kind != NetEvent::Kind::closed) continue;
+    if (event.type == NetEvent::Type::opened) return link;
+    if (event.type != NetEvent::Type::closed) continue;
     why_ = event.why;
     if (event.final) fail(refused(options_.server, event.why));
     return {};
@@ -162,13 +162,13 @@ void ClientLink::serve(Net& net, Link link) {
   NetEvent event;
   while (!stop_) {
     for (bool more = net.next(event, 2); more; more = net.next(event, 0)) {
-      if (event.kind == NetEvent::Kind::closed) {
+      if (event.type == NetEvent::Type::closed) {
         // The reason may still wait to be read.
         while (!client_.idle() && !stop_) wait(1e-3);
         if (!over()) lost();
         return;
       }
-      if (event.kind != NetEvent::Kind::received) continue;
+      if (event.type != NetEvent::Type::received) continue;
       const Status status = client_.push(std::move(event.message));
       if (status == Status::limit_exceeded) {
         fail("decoding does not keep up with what the server sends");
@@ -204,7 +204,7 @@ void ClientLink::leave(Net& net, Link link) {
   const double end = now() + kGoodbye;
   NetEvent event;
   while (now() < end) {
-    if (net.next(event, 10) && event.kind == NetEvent::Kind::closed) return;
+    if (net.next(event, 10) && event.type == NetEvent::Type::closed) return;
   }
   net.abandon(link);
 }

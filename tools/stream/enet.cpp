@@ -115,14 +115,14 @@ bool Enet::next(NetEvent& event, unsigned milliseconds) {
   event.link = {got.peer, nullptr};
   switch (got.type) {
     case ENET_EVENT_TYPE_CONNECT:
-      event.kind = NetEvent::Kind::opened;
+      event.type = NetEvent::Type::opened;
       prepare(got.peer);
       break;
     case ENET_EVENT_TYPE_DISCONNECT:
-      event.kind = NetEvent::Kind::closed;
+      event.type = NetEvent::Type::closed;
       break;
     default: {
-      event.kind = NetEvent::Kind::received;
+      event.type = NetEvent::Type::received;
       const auto* const data = reinterpret_cast<const std::byte*>(got.packet->data);
       event.message.assign(data, data + got.packet->dataLength);
       enet_packet_destroy(got.packet);

@@ -140,7 +140,7 @@ Status Service::update_and_listen() {
       bytes += sizeof event + event.message.size();
       arrived.push_back(std::move(event));
       // Its link is not to be used for another one before that is known.
-      if (arrived.back().kind == NetEvent::Kind::closed) break;
+      if (arrived.back().type == NetEvent::Type::closed) break;
     }
   } catch (...) {
     if (!updater_.idle())
@@ -174,17 +174,17 @@ void Service::open(Link link) {
 }
 
 void Service::handle(NetEvent& event) {
-  if (event.kind == NetEvent::Kind::opened) return open(event.link);
+  if (event.type == NetEvent::Type::opened) return open(event.link);
   const std::uintptr_t tag = Net::tag(event.link);
   if (tag == kNoConnection) return;
   const auto id = static_cast<ConnectionId>(tag);
-  if (event.kind == NetEvent::Kind::received) {
+  if (event.type == NetEvent::Type::received) {
     server_.receive(id, event.message, now());
     take_events();
     send(id);
     return;
   }
-  if (event.kind == NetEvent::Kind::broken) {
+  if (event.type == NetEvent::Type::broken) {
     server_.drop(id, event.reason);
     return take_events();
   }
@@ -205,32 +205,32 @@ void Service::take_events() {
 }
 
 void Service::take(const ServerEvent& event) {
-  if (event.kind == ServerEvent::Kind::expired) {
+  if (event.type == ServerEvent::Type::expired) {
     sessions_.erase(event.client);
     return log("client {} forgotten", event.client);
   }
   const auto it = connections_.find(event.connection);
   if (it == connections_.end()) return;
   Connection& connection = it->second;
-  switch (event.kind) {
-    case ServerEvent::Kind::joined:
-    case ServerEvent::Kind::resumed: {
-      if (event.kind == ServerEvent::Kind::joined) sessions_[event.client] = {now(), 0, 0};
+  switch (event.type) {
+    case ServerEvent::Type::joined:
+    case ServerEvent::Type::resumed: {
+      if (event.type == ServerEvent::Type::joined) sessions_[event.client] = {now(), 0, 0};
       const auto statistics = server_.statistics(event.connection);
       const bool unicast = !statistics || statistics->delivery == Delivery::unicast;
       connection.user = access_->user(event.connection);
       statistics_.named(event.connection, connection.user);
       log("{} {} as client {} ({}{}{})", connection.address,
-          event.kind == ServerEvent::Kind::joined ? "joined" : "came back", event.client,
+          event.type == ServerEvent::Type::joined ? "joined" : "came back", event.client,
           unicast ? "unicast" : "shared", connection.user.empty() ? "" : ", user ",
           connection.user);
-      if (viewer_ && event.kind == ServerEvent::Kind::joined) show_nothing(event.connection);
+      if (viewer_ && event.type == ServerEvent::Type::joined) show_nothing(event.connection);
       break;
     }
-    case ServerEvent::Kind::subscribed:
+    case ServerEvent::Type::subscribed:
       connection.chooses = true;
       break;
-    case ServerEvent::Kind::dropped:
+    case ServerEvent::Type::dropped:
       ++dropped_[event.reason];
       if (event.reason == Reason::left) {
         log("{} left {}", connection.address, account(event.connection, true));
@@ -381,7 +381,7 @@ void Service::say_goodbye() {
   const double end = now() + kGoodbyeSeconds;
   NetEvent event;
   while (!connections_.empty() && now() < end) {
-    if (net_.next(event, 10) && event.kind == NetEvent::Kind::closed) handle(event);
+    if (net_.next(event, 10) && event.type == NetEvent::Type::closed) handle(event);
   }
 }
 

@@ -105,12 +105,12 @@ class LoadTest {
   }
 
   void handle(Simulated& c, NetEvent& event) {
-    if (event.kind == NetEvent::Kind::opened) {
+    if (event.type == NetEvent::Type::opened) {
       c.open = true;
       const auto hello = c.client.hello();
       if (hello) c.net.send(c.link, {*hello});
       if (path_.known()) look(c, 0);
-    } else if (event.kind == NetEvent::Kind::received) {
+    } else if (event.type == NetEvent::Type::received) {
       receive(c, event.message);
     } else {
       if (event.final) tools::fail(tools::Exit::io, "{}", refused(options_.server, event.why));

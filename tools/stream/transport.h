@@ -49,13 +49,13 @@ struct Link {
 };
 
 struct NetEvent {
-  enum class Kind : std::uint8_t {
+  enum class Type : std::uint8_t {
     opened,
     received,
     broken,  ///< the peer broke a rule of the transport's; see reason
     closed,
   };
-  Kind kind{};
+  Type type{};
   Link link;
   Message message;
   Reason reason{};

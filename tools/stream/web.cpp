@@ -66,8 +66,8 @@ bool Web::next(NetEvent& event) {
     [[maybe_unused]] const auto got = ::read(state_->wake_up, &count, sizeof count);
   }
   WebLink* const link = event.link.web;
-  if (event.kind == NetEvent::Kind::closed) state_->closed = link;
-  if (event.kind != NetEvent::Kind::received) return true;
+  if (event.type == NetEvent::Type::closed) state_->closed = link;
+  if (event.type != NetEvent::Type::received) return true;
   --link->waiting;
   link->waiting_bytes -= event.message.size();
   return true;
@@ -92,7 +92,7 @@ bool Web::send(WebLink* link, const OutgoingMessage& message) {
       link->unsent.pop_back();
     }
     NetEvent event;
-    event.kind = NetEvent::Kind::broken;
+    event.type = NetEvent::Type::broken;
     event.link = {nullptr, link};
     event.reason = Reason::stalled;
     state_->push(std::move(event));

@@ -111,7 +111,7 @@ int WebLoop::Loop::opened(WebLink* link, lws* wsi) {
   ++open_links;
   link->wsi = wsi;
   link->open = true;
-  state.tell(link, NetEvent::Kind::opened);
+  state.tell(link, NetEvent::Type::opened);
   return 0;
 }
 

@@ -37,9 +37,9 @@ void WebState::push(NetEvent event) {
   [[maybe_unused]] const auto written = ::write(wake_up, &one, sizeof one);
 }
 
-void WebState::tell(WebLink* link, NetEvent::Kind kind, Reason reason) {
+void WebState::tell(WebLink* link, NetEvent::Type kind, Reason reason) {
   NetEvent event;
-  event.kind = kind;
+  event.type = kind;
   event.link = {nullptr, link};
   event.reason = reason;
   const std::lock_guard lock(mutex);
@@ -57,7 +57,7 @@ void WebState::receive(WebLink* link, std::span<const std::byte> bytes, const We
   if (!frame.final) return;
   ++link->messages;
   NetEvent event;
-  event.kind = NetEvent::Kind::received;
+  event.type = NetEvent::Type::received;
   event.link = {nullptr, link};
   event.message = std::exchange(link->partial, {});
   std::unique_lock lock(mutex);
@@ -74,7 +74,7 @@ void WebState::receive(WebLink* link, std::span<const std::byte> bytes, const We
 void WebState::refuse(WebLink* link, Reason reason) {
   link->broken = true;
   link->partial = {};
-  tell(link, NetEvent::Kind::broken, reason);
+  tell(link, NetEvent::Type::broken, reason);
 }
 
 void WebState::closed(WebLink* link, bool announced, const std::string& why, bool final) {
@@ -84,7 +84,7 @@ void WebState::closed(WebLink* link, bool announced, const std::string& why, boo
   link->unsent_bytes = 0;
   if (link->abandoned || !announced) return forget(link);
   NetEvent event;
-  event.kind = NetEvent::Kind::closed;
+  event.type = NetEvent::Type::closed;
   event.link = {nullptr, link};
   event.why = why;
   event.final = final;

@@ -31,7 +31,7 @@ struct WebState {
   WebLink* add(std::unique_ptr<WebLink> link);
 
   // The loop's thread:
-  void tell(WebLink* link, NetEvent::Kind kind, Reason reason = Reason::left);
+  void tell(WebLink* link, NetEvent::Type kind, Reason reason = Reason::left);
   /// What cannot be a message is known before it is kept.
   void receive(WebLink* link, std::span<const std::byte> bytes, const WebFrame& frame);
   /// Nothing more is taken from who breaks a rule; the caller says the reason, and closes.

@@ -28,7 +28,7 @@ const Connection* Server::State::find_session(ConnectionId connection) const noe
   return found ? it->second.get() : nullptr;
 }
 
-void Server::State::event(ServerEvent::Kind kind, const Connection& connection) {
+void Server::State::event(ServerEvent::Type kind, const Connection& connection) {
   events.push_back({kind, connection.id, connection.session->client, Reason::left});
 }
 
@@ -60,7 +60,7 @@ void Server::State::drop(Connection& connection, Reason reason) noexcept {
     }));
   }
   const ClientId client = connection.session != nullptr ? connection.session->client : 0;
-  connection.farewell = ServerEvent{ServerEvent::Kind::dropped, connection.id, client, reason};
+  connection.farewell = ServerEvent{ServerEvent::Type::dropped, connection.id, client, reason};
   if (connection.session != nullptr) end(*std::exchange(connection.session, nullptr));
 }
 
@@ -176,7 +176,7 @@ void Server::tick(double now) {
     for (auto it = state_->sessions.begin(); it != state_->sessions.end();) {
       Session& session = *(it++)->second;
       if (session.connection != 0 || now - session.lost <= options.timeouts.linger) continue;
-      state_->events.push_back({ServerEvent::Kind::expired, 0, session.client, Reason::left});
+      state_->events.push_back({ServerEvent::Type::expired, 0, session.client, Reason::left});
       state_->end(session);
     }
     return Status::ok;

@@ -82,7 +82,7 @@ void Server::State::answer(Connection& connection, const Hello& hello, double no
   static_cast<void>(distributor.set_budget(session->client, hello.budget));
   const auto held = resumed ? std::span(hello.held) : std::span<const HeldState>();
   if (!take_held(connection, hello.sync, hello.generation, held)) return;
-  event(resumed ? ServerEvent::Kind::resumed : ServerEvent::Kind::joined, connection);
+  event(resumed ? ServerEvent::Type::resumed : ServerEvent::Type::joined, connection);
   const Welcome welcome{hello.sync,    session->ticket, resumed,    session->delivery,
                         options.epoch, options.scene,   generation, described_now()};
   const Status sent = send(connection, welcome);
@@ -186,7 +186,7 @@ void Server::State::make_room(Delivery delivery, std::size_t origin) {
     if (chosen == nullptr || before(*session, *chosen)) chosen = session.get();
   }
   if (chosen == nullptr) return;
-  events.push_back({ServerEvent::Kind::expired, 0, chosen->client, Reason::full});
+  events.push_back({ServerEvent::Type::expired, 0, chosen->client, Reason::full});
   end(*chosen);
 }
 
@@ -260,7 +260,7 @@ void Server::State::answer(Connection& connection, const Acknowledge& acknowledg
 
 void Server::State::answer(Connection& connection, const Viewpoint& viewpoint, double) {
   connection.session->viewpoint = viewpoint;
-  event(ServerEvent::Kind::viewpoint, connection);
+  event(ServerEvent::Type::viewpoint, connection);
 }
 
 void Server::State::answer(Connection& connection, const Subscribe& subscribe, double now) {
@@ -278,7 +278,7 @@ void Server::State::answer(Connection& connection, const Subscribe& subscribe, d
   if (status == Status::out_of_memory) return drop(connection, Reason::exhausted);
   if (status == Status::mask_mismatch) return drop(connection, Reason::malformed);
   if (status != Status::ok) return drop(connection, Reason::unknown_volume);
-  event(ServerEvent::Kind::subscribed, connection);
+  event(ServerEvent::Type::subscribed, connection);
 }
 
 void Server::State::answer(Connection& connection, const Goodbye&, double) {

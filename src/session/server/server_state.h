@@ -102,7 +102,7 @@ struct Server::State {
   [[nodiscard]] Connection* find(ConnectionId connection);
   /// Unless it does not exist, was dropped, or has no session.
   [[nodiscard]] const Connection* find_session(ConnectionId connection) const noexcept;
-  void event(ServerEvent::Kind kind, const Connection& connection);
+  void event(ServerEvent::Type kind, const Connection& connection);
   Status send(Connection& connection, const AnyMessage& message);
   void drop(Connection& connection, Reason reason) noexcept;
   void end(Session& session) noexcept;

@@ -57,7 +57,7 @@ void RecordModel::reset(const TextureDesc& desc, bool update, ValueModel& values
   unsigned next = 0;
   for (unsigned c = 0; c < record.count; ++c) {
     const Component& component = record.components[c];
-    if (component.kind != ComponentKind::exponent || component.bits > kMaxShift) continue;
+    if (component.type != ComponentType::exponent || component.bits > kMaxShift) continue;
     exponent_ = c;
     order_[next++] = static_cast<std::uint8_t>(c);
     break;
@@ -67,7 +67,7 @@ void RecordModel::reset(const TextureDesc& desc, bool update, ValueModel& values
     const unsigned c = record.count >= 3 && i < 2 ? 1 - i : i;
     const Component& component = record.components[c];
     if (shared && c == exponent_) continue;
-    if (shared && component.kind == ComponentKind::ufloat && component.bits < 10) {
+    if (shared && component.type == ComponentType::ufloat && component.bits < 10) {
       mantissas_ |= 1U << c;
     }
     order_[next++] = static_cast<std::uint8_t>(c);

@@ -86,7 +86,7 @@ bool RecordModel::code_copy(Coder& coder, unsigned place, Seen& here, std::uint3
     if (here.now[d] == here.previous[d] || desc_.record.components[d].bits != component.bits)
       continue;
     if (is(here.now[d], 1, d)) return true;
-    if (component.kind != ComponentKind::sfloat) continue;
+    if (component.type != ComponentType::sfloat) continue;
     if (is(here.now[d] ^ 1U << (component.bits - 1U), 2, d)) return true;
   }
   return false;

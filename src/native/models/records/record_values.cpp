@@ -25,11 +25,11 @@ enum Role : std::uint32_t {
 enum class Scale { previous, codes, linear };
 Scale scale_of(const Component& component, bool mantissa) {
   if (mantissa) return Scale::linear;
-  if (component.bits > 16 || component.kind == ComponentKind::opaque ||
-      component.kind == ComponentKind::exponent) {
+  if (component.bits > 16 || component.type == ComponentType::opaque ||
+      component.type == ComponentType::exponent) {
     return Scale::previous;
   }
-  return component.kind == ComponentKind::unorm || component.kind == ComponentKind::uint
+  return component.type == ComponentType::unorm || component.type == ComponentType::uint
              ? Scale::linear
              : Scale::codes;
 }

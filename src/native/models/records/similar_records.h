@@ -45,7 +45,7 @@ class SimilarRecords {
   [[nodiscard]] std::size_t key(const Values& previous) const {
     std::uint32_t key = 0;
     for (unsigned c = 0; c < record_.count; ++c) {
-      if (record_.components[c].kind == ComponentKind::snorm) key = key << 4 | (previous[c] & 15);
+      if (record_.components[c].type == ComponentType::snorm) key = key << 4 | (previous[c] & 15);
     }
     return key % kKeys;
   }
