@@ -36,8 +36,7 @@ inline constexpr float kMinWeight = 1.0F / 64;
 /// weighing.
 void keep_oldest(std::vector<Candidate>& candidates, std::size_t limit);
 
-/// The blocks that a candidate depends on and the client lacks. Null: none. They depend on no
-/// other.
+/// The blocks that a candidate depends on and the client lacks, for choose(); null: none.
 using Missing = std::function<std::vector<Candidate>(const Candidate&)>;
 
 /// Keeps candidates of at most `limit` blocks, or a single one, in order of bundle and block. Half
