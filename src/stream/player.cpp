@@ -180,7 +180,7 @@ Status ContainerPlayer::State::go_on(bool decoding) {
       where = {frame, std::nullopt};
       return status;
     }
-    decoders.begin_changes(!sought);  // All count as changed by what leads to a frame.
+    decoders.begin_changes(!sought);  // After seek() all blocks count as changed.
     frame = std::max(ahead->frame, sought.value_or(0));
     begun = true;
   }
@@ -208,7 +208,7 @@ Status ContainerPlayer::State::go_on(bool decoding) {
     }
     all_changed = sought.has_value();
     decoders.settle_changes(all_changed);
-    if (count > 0 && packets[0].frame != frame) count = at = 0;  // Those led to it.
+    if (count > 0 && packets[0].frame != frame) count = at = 0;  // Those are of earlier frames.
     sought.reset();
     begun = false;
     return status;
@@ -249,7 +249,7 @@ Status ContainerPlayer::seek(std::uint64_t frame) {
     s.packed = 0;
     s.begun = false;
     s.sought = frame;
-    // What came later is not there yet.
+    // Decoders may hold later frames.
     s.decoders.clear();
     return Status::ok;
   });

@@ -35,13 +35,13 @@ struct ContainerPlayer::State {
   TextureDecoders decoders;
   std::vector<bool> selected;  ///< by texture
   std::optional<ContainerPacket> ahead;
-  Status failed = Status::ok;            ///< of the reader, to be told in its turn
-  std::vector<ContainerPacket> packets;  ///< of the frame, and room for more
+  Status failed = Status::ok;            ///< the reader's error, for a later call
+  std::vector<ContainerPacket> packets;  ///< those of the frame first; the others are spare
   std::size_t count = 0, at = 0;         ///< packets of the frame, and how many were applied
   std::uint64_t packed = 0;              ///< bytes of the frame's packets
-  bool gathering = false;                ///< while there may be more of them
-  bool started = false;                  ///< a frame was asked for
-  bool begun = false;                    ///< a frame that is not through
+  bool gathering = false;                ///< the frame may have further packets
+  bool started = false;                  ///< next(), skip() or seek() was called
+  bool begun = false;                    ///< a frame is begun and not complete
   bool all_changed = false;
   std::uint64_t frame = 0;
   std::optional<std::uint64_t> sought;  ///< frame of seek(), until next() reaches it

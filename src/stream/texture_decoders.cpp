@@ -41,7 +41,7 @@ Result<Decoder*> TextureDecoders::decoder(std::uint8_t texture, std::uint32_t re
   if (const auto found = decoders_.find(part); found != decoders_.end()) return &found->second;
   const auto& [whole, size, presence] = textures_[texture];
   const TextureDesc desc = is_cut(texture) ? region_texture(whole, size, region) : whole;
-  // With room for the changes of a frame, which may come in two packets.
+  // With the lists of a frame's changes, which may come in two packets.
   const std::uint64_t lists = 2 * sizeof(std::uint32_t) * std::uint64_t{block_count(desc)};
   const std::uint64_t more = held_memory(desc) + lists;
   const std::uint64_t shared = std::max(scratched_, scratch_memory(desc, options_.threads.count));
@@ -109,7 +109,7 @@ Status TextureDecoders::set_layout(std::uint8_t texture, const Layout& layout) {
   return Status::ok;
 }
 
-/// Blocks of a region, and where they are in the texture.
+/// Writes blocks of a region. `numbers`: in the region; `blocks`: in the texture.
 Status TextureDecoders::read_region(std::uint8_t texture, std::uint32_t region,
                                     const TextureView& view, std::span<const std::uint32_t> numbers,
                                     std::span<const std::uint32_t> blocks) const {

@@ -1,5 +1,5 @@
-// Decoders of the textures of a volume, or of several: one of each texture, or of each region that
-// it is cut into. They are made when they are first needed and share their working memory.
+// Decoders of the textures of one or more volumes: one per texture, or per region of a texture that
+// is cut into regions. They are created on first use and share their working memory.
 #pragma once
 
 #include <gicodec/decoder.h>
@@ -20,49 +20,51 @@ namespace gicodec {
 class TextureDecoders {
  public:
   struct Texture {
-    TextureDesc desc;                           ///< as views have it
-    Grid region{};                              ///< zeros: it is not cut
-    std::optional<std::uint8_t> presence = {};  ///< whose blocks say which records exist
+    TextureDesc desc;                           ///< with the layout of views
+    Grid region{};                              ///< region size; zeros: not cut
+    std::optional<std::uint8_t> presence = {};  ///< the texture that holds its presence
   };
-  /// Creates a scratch. out_of_memory.
+  /// out_of_memory.
   [[nodiscard]] static Result<TextureDecoders> create(std::vector<Texture> textures,
                                                       DecoderOptions options);
 
-  /// Of a region as RegionGrid counts it, or StreamId::kWholeVolume of a texture that is not cut.
-  /// Errors: those of Decoder::create(), limit_exceeded where all take more than max_total_bytes.
+  /// Creates the decoder if there is none yet. `region`: its number in RegionGrid, or
+  /// StreamId::kWholeVolume for a texture that is not cut. Errors: those of Decoder::create();
+  /// limit_exceeded if all decoders take more than max_total_bytes.
   Result<Decoder*> decoder(std::uint8_t texture, std::uint32_t region);
-  /// Null if none was needed.
+  /// Null if it was not created.
   [[nodiscard]] const Decoder* find(std::uint8_t texture, std::uint32_t region) const noexcept;
   /// Applies a packet. Errors: those of decoder() and Decoder::decode().
   Status decode(std::uint8_t texture, std::uint32_t region, std::span<const std::byte> packet);
-  /// All that was decoded is gone.
+  /// Deletes all decoders.
   void clear() noexcept;
 
-  /// Writes a texture, or some blocks, ascending; zeros where nothing was received.
+  /// Writes a texture, or some blocks, ascending; blocks that were not received are zero.
   Status read(std::uint8_t texture, const TextureView& view) const;
   Status read(std::uint8_t texture, const TextureView& view,
               std::span<const std::uint32_t> blocks) const;
 
-  /// Nothing has changed; from here on decode() notes what does, if it is to be `noted`.
+  /// Empties changed(). If `noted`, decode() notes changed blocks from here on.
   void begin_changes(bool noted) noexcept;
-  /// Makes the lists ascending, each block once; or `all` blocks of textures that have decoders.
+  /// Sorts changed(), each block once; or, if `all`, lists all blocks of textures with decoders.
   void settle_changes(bool all);
   [[nodiscard]] std::span<const std::uint32_t> changed(std::uint8_t texture) const noexcept {
     return changed_[texture];
   }
 
-  /// Where views have the blocks of a texture that has no decoder yet, else out_of_order.
+  /// Sets the layout of a texture's views. out_of_order if the texture has a decoder.
   Status set_layout(std::uint8_t texture, const Layout& layout);
   [[nodiscard]] const Texture& operator[](std::uint8_t texture) const noexcept {
     return textures_[texture];
   }
   [[nodiscard]] std::size_t size() const noexcept { return textures_.size(); }
 
-  /// Bytes that are held, at their worst.
+  /// Peak bytes of all decoders.
   [[nodiscard]] std::uint64_t memory() const noexcept { return held_ + scratched_; }
-  /// Bytes that the caller holds beside, which count too: limit_exceeded beyond max_total_bytes.
+  /// Sets the bytes that the caller holds itself, which count as well. limit_exceeded beyond
+  /// max_total_bytes.
   Status set_beside(std::uint64_t bytes) noexcept;
-  /// Bytes that the last decode() or set_beside() compared with max_total_bytes; 0 if it did not.
+  /// Bytes that the last decode() or set_beside() compared with max_total_bytes; 0: it did not.
   [[nodiscard]] std::uint64_t needed() const noexcept { return needed_; }
 
  private:
@@ -87,7 +89,7 @@ class TextureDecoders {
   std::vector<Texture> textures_;
   DecoderOptions options_;
   std::map<Part, Decoder> decoders_;
-  std::uint64_t held_ = 0, scratched_ = 0;  ///< bytes of decoders, and of what they share
+  std::uint64_t held_ = 0, scratched_ = 0;  ///< bytes of decoders, and of their shared memory
   std::uint64_t beside_ = 0, needed_ = 0;
   bool noting_ = false;
   std::vector<std::vector<std::uint32_t>> changed_;  ///< by texture

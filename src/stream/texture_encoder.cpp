@@ -31,7 +31,7 @@ Result<std::unique_ptr<TextureEncoder>> TextureEncoder::create(const TextureDesc
   if (!is_valid(settings.threads) || !is_supported(settings.isa)) return Status::invalid_settings;
   auto encoder = backend->make_encoder(desc, settings);
   if (!encoder) return encoder.status();
-  // Errors of both would add up.
+  // The errors of the backend and of max_error would add up.
   if ((*encoder)->lossy() && options.max_error > 0) return Status::invalid_bound;
   return std::make_unique<TextureEncoder>(desc, options, *backend, *std::move(encoder));
 }
@@ -73,10 +73,9 @@ void TextureEncoder::keep_changed(bool keyframe) {
 }
 
 Status TextureEncoder::write(std::span<const std::uint32_t> blocks, bool keyframe) {
-  // What a backend remembers may move on from here: until all is done, a failure means that only a
-  // keyframe can follow.
+  // The state of a backend changes from here on: if there is no commit(), a keyframe must follow.
   if (backend_->is_stateful()) keyframe_wanted_ = true;
-  // Nothing moves, so that one packet has it all.
+  // An encoder's blocks do not scroll, so that there is one packet.
   return stream_.write(keyframe ? UpdateStream::From::keyframe : UpdateStream::From::sent, blocks,
                        *backend_, writer_, written_);
 }
@@ -89,7 +88,7 @@ void TextureEncoder::commit(bool keyframe) noexcept {
 }
 
 void TextureEncoder::cancel() noexcept {
-  // What was not sent is nothing that later contents are measured by.
+  // Later contents are compared with what was sent.
   if (std::exchange(pending_, false)) history_.undo();
 }
 

@@ -1,5 +1,5 @@
-// What an encoder holds of one texture, and its steps: those of several textures can be taken
-// together, and taken back.
+// Texture encoder: the state and steps of encoding one texture. The steps of several textures can
+// be committed together, or cancelled.
 #pragma once
 
 #include <gicodec/encoder.h>
@@ -15,26 +15,25 @@
 
 namespace gicodec {
 
-/// select(), keep_changed() as wanted, write(), then commit() or cancel(): until commit() nothing
-/// has changed but that the next packet may have to be a keyframe.
+/// Call select(), keep_changed() if wanted, write(), then commit() or cancel(). Before commit()
+/// nothing changes, except that the next packet may have to be a keyframe.
 class TextureEncoder {
  public:
   /// Errors: those of Encoder::create().
   [[nodiscard]] static Result<std::unique_ptr<TextureEncoder>> create(
       const TextureDesc& desc, const EncoderOptions& options);
 
-  /// Makes the selected blocks of a view the current ones.
+  /// Reads the selected blocks of a view as their current versions.
   Status select(const ConstTextureView& texture, Selection selection);
-  /// Drops the blocks that the decoder has already; at a keyframe it has nothing.
+  /// Deselects blocks whose contents the decoder has; before a keyframe it has none.
   void keep_changed(bool keyframe);
-  /// Those that are selected, ascending.
+  /// The selected blocks, ascending.
   [[nodiscard]] std::span<const std::uint32_t> blocks() const noexcept { return blocks_; }
-  /// Codes these, which were selected.
+  /// Codes these blocks, which must be selected, into packet().
   Status write(std::span<const std::uint32_t> blocks, bool keyframe);
-  /// What write() made.
   [[nodiscard]] Packet& packet() noexcept { return written_.packets().front().packet; }
   void commit(bool keyframe) noexcept;
-  /// Takes select() back, unless commit() came after it.
+  /// Reverts select(), unless commit() came after it.
   void cancel() noexcept;
 
   Status snapshot(Packet& out);
@@ -43,11 +42,12 @@ class TextureEncoder {
   }
   void request_keyframe() noexcept { keyframe_wanted_ = true; }
   void set_active(Vector<std::uint8_t> active) noexcept { active_ = std::move(active); }
-  /// Of every block; the right size.
+  /// `presence`: presence_bytes() of every block.
   void set_presence(std::span<const std::byte> presence) {
     presence_.assign(presence.begin(), presence.end());
   }
-  /// Of the blocks that are selected in the texture that says it. presence_invalid.
+  /// Takes the presence of the selected blocks of `from`, the texture that holds it.
+  /// presence_invalid.
   Status take_presence(const TextureEncoder& from);
 
   Status read(const TextureView& texture) const;
@@ -71,7 +71,7 @@ class TextureEncoder {
   BlockHistory history_;  ///< what is current, and what the decoder holds
   UpdateStream stream_;
   Vector<std::uint8_t> active_;
-  Vector<std::byte> presence_;  ///< of every block; empty until it is told
+  Vector<std::byte> presence_;  ///< of every block; empty until it is set
 
   // Scratch of one packet, kept for its capacity.
   Vector<std::uint32_t> blocks_;
@@ -79,7 +79,7 @@ class TextureEncoder {
   Written written_;
 };
 
-/// Takes back what was not committed when it goes.
+/// Its destructor cancels what was not committed.
 class Pending {
  public:
   explicit Pending(std::span<const std::unique_ptr<TextureEncoder>> textures) noexcept

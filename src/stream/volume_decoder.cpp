@@ -12,7 +12,7 @@ struct VolumeDecoder::State {
   State(const VolumeDesc& desc, TextureDecoders made, std::uint8_t first)
       : volume(desc), textures(std::move(made)), first_texture(first), updated(textures.size()) {}
 
-  /// The place of a packet's texture.
+  /// The texture of a packet, by its place in the volume. unknown_texture.
   [[nodiscard]] Result<std::uint8_t> place_of(std::span<const std::byte> packet) const noexcept;
   Status decode(std::uint8_t texture, std::span<const std::byte> packet);
 

@@ -1,5 +1,4 @@
-// The steps of an encoder (encoder.cpp), of all textures: nothing is committed before all are
-// coded.
+// The steps of an encoder (encoder.cpp) with all textures: commits after all are coded.
 #include <gicodec/volume_encoder.h>
 
 #include "base/guard.h"
@@ -26,10 +25,10 @@ struct VolumeEncoder::State {
 
   VolumeDesc volume;
   std::vector<std::unique_ptr<TextureEncoder>> textures;
-  std::vector<std::vector<std::uint32_t>> changed;  ///< by group, of are bundled
+  std::vector<std::vector<std::uint32_t>> changed;  ///< by group, of bundled ones
 };
 
-/// Says, on the way, which records exist, and which blocks of the group changed.
+/// Selects blocks of a group's textures. Also sets their presence, and the group's changed blocks.
 Status VolumeEncoder::State::select(std::size_t group, std::span<const ConstTextureView> views,
                                     Selection selection, bool keyframe) {
   const auto own = textures_of(group);

@@ -15,17 +15,17 @@
 namespace gicodec {
 namespace {
 
-/// A request is repeated after this many messages that do not answer it.
+/// The client repeats a Resync after this many messages that do not answer it.
 constexpr std::uint32_t kPatience = 16;
-/// Bytes of requests over a connection: these, and some times what was received.
+/// Bytes of Resyncs over a connection: at most kFreeQuestions + kQuestionRatio · bytes received.
 constexpr std::uint64_t kFreeQuestions = std::uint64_t{16} << 20, kQuestionRatio = 8;
 
-/// False for backends of which nothing is known.
+/// False for unknown backends.
 bool depends_on_mirror_only(std::uint8_t backend) {
   return backend <= kBackendNative && backend != kBackendHevc;
 }
 
-/// The group of a texture, and the id of that group's first one.
+/// The group of a texture, and the id of that group's first texture.
 std::pair<const TextureGroup*, std::uint8_t> group_of(const VolumeDesc& volume,
                                                       std::uint8_t texture) {
   std::uint8_t first = 0;
@@ -82,7 +82,7 @@ Status Client::receive(std::span<const std::byte> bytes) {
     State& s = *state_;
     if (s.left) return Status::end;
     s.heard += bytes.size();
-    // Lists of blocks are for servers.
+    // Servers send no lists of blocks.
     const MessageLimits limits{s.options.limits.max_packet_bytes, 0};
     const auto message = read_message(bytes, limits);
     if (!message) return message.status();
@@ -138,7 +138,7 @@ Status Client::State::take(const UpdateMessage& update) {
     }
     return Status::ok;
   }
-  // Of volumes that it has not heard of nothing can be said.
+  // The client has missed a Volumes message.
   if (update.generation > generation) return ask_again();
   if (const Status status = check(update); status != Status::ok) return status;
   if (update.number != last_number + 1) return ask_again();
@@ -173,7 +173,7 @@ Status Client::State::take(const UpdateMessage& update) {
   return said;
 }
 
-/// Blocks of planes that enter belong elsewhere.
+/// Marks blocks of entering planes as not received.
 void Client::State::scroll(const UpdateMessage& update) {
   for (std::size_t v = 0; v < frame.volumes.size(); ++v) {
     ClientVolume& volume = frame.volumes[v];
@@ -211,7 +211,7 @@ std::optional<StreamId> Client::State::presence_of(StreamId id) const {
   return id;
 }
 
-/// Which records exist comes with the texture that says so, in the same update or before.
+/// Takes the presence from the stream that holds it, as of the packets applied so far.
 Status Client::State::set_presence(StreamId id, Decoder& decoder) {
   const auto presence = presence_of(id);
   if (!presence) return Status::ok;
@@ -220,8 +220,8 @@ Status Client::State::set_presence(StreamId id, Decoder& decoder) {
   return decoder.set_presence((*existing)->decoder.records());
 }
 
-/// True if what came speaks of records that there are, and what does not exist any more is zero:
-/// whoever draws goes by it.
+/// True if the presence of a block counts no records beyond the block, and records that do not
+/// exist are zero. Renderers rely on both.
 bool Client::State::presence_holds(const StreamId& stream, std::uint32_t block) const {
   const auto [group, first] = group_of(frame.find(stream.volume)->desc, stream.texture);
   const auto block_in = [&](const Decoder& decoder) {
@@ -289,7 +289,7 @@ bool Client::State::proven(const UpdateMessage::Proof& proof) {
   return false;
 }
 
-/// Opens another sync point with what is here.
+/// Opens another sync point with the states that the client holds.
 Status Client::State::ask_again() {
   ++sync;
   ++statistics.gaps;
@@ -299,7 +299,8 @@ Status Client::State::ask_again() {
   return ask();
 }
 
-/// Or ends the connection: who makes a client ask for more than it is sent means no good.
+/// Sends a Resync. limit_exceeded, which ends the connection, if Resyncs take far more bytes than
+/// the server sends: it is hostile then.
 Status Client::State::ask() {
   Resync resync{sync, generation, held()};
   asked += resync.held.size() * sizeof(HeldState);

@@ -1,4 +1,4 @@
-// Frames of a client: how blocks get from one to the other.
+// Frames of a client: lookup, changed blocks, copies.
 #include "session/client/client_frame.h"
 
 #include <algorithm>
@@ -39,7 +39,7 @@ bool same_volume(const ClientVolume& a, const ClientVolume& b) noexcept {
   return a.instance == b.instance;
 }
 
-/// Gives `to` the volumes of `from`: its own where it has them, else copies.
+/// Gives `to` the volumes of `from`: keeps those that it has, copies the others.
 void follow_volumes(const ClientFrame& from, ClientFrame& to) {
   std::vector<ClientVolume> volumes;
   volumes.reserve(from.volumes.size());

@@ -1,4 +1,4 @@
-// Frames of a client: how blocks get from one to the other.
+// Frames of a client: lookup, changed blocks, copies.
 #pragma once
 
 #include <gicodec/client.h>

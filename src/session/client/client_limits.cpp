@@ -17,7 +17,7 @@ bool repeated(std::vector<StreamId>& streams) {
   return std::adjacent_find(streams.begin(), streams.end()) != streams.end();
 }
 
-/// What a client holds, and what its decoders share.
+/// Bytes that a client holds, and that its decoders share.
 struct Memory {
   std::uint64_t held = 0, scratch = 0;
   [[nodiscard]] std::uint64_t all() const noexcept { return saturated(held, scratch); }
@@ -33,10 +33,10 @@ void add(Memory& memory, const TextureDesc& desc, const Grid& region, Delivery d
   std::uint64_t streams = 1;
   if (delivery == Delivery::shared) {
     streams = regions_of(desc, region).regions();
-    of_stream = region_texture(desc, region, 0);  // None is larger.
+    of_stream = region_texture(desc, region, 0);  // The first region is the largest.
     held += (blocks + 3 * block_count(of_stream)) * sizeof(std::uint32_t);
   }
-  // One texture's are far from the largest number; those of all may not be.
+  // The sum of all textures may overflow, that of one cannot.
   memory.held = saturated(memory.held, held + held_memory(desc) + streams * kTexture);
   memory.scratch = std::max(memory.scratch, scratch_memory(of_stream, threads));
 }

@@ -1,4 +1,4 @@
-// What a Client is made of.
+// The state of a Client.
 #pragma once
 
 #include <gicodec/client.h>
@@ -14,11 +14,11 @@
 
 namespace gicodec {
 
-/// One chain of packets and where its blocks stand in the volume.
+/// One chain of packets, and the places of its blocks in the volume.
 struct Chain {
   Decoder decoder;
-  std::vector<std::uint32_t> blocks;  ///< the volume's, for a region; empty for the whole volume
-  /// A packet since the last keyframe may depend on earlier ones by more than the mirror.
+  std::vector<std::uint32_t> blocks;  ///< of the volume, by block; empty for the whole volume
+  /// A packet since the last keyframe may depend on more than the mirror.
   bool stateful = false;
 };
 
@@ -40,7 +40,7 @@ struct Client::State {
   Status ask();
   Status begin(const Welcome& welcome);
   Status follow(std::span<const DescribedVolume> said);
-  /// The stream whose blocks say which records of this one exist, if any.
+  /// The stream that holds the presence of this one, if any.
   [[nodiscard]] std::optional<StreamId> presence_of(StreamId id) const;
   [[nodiscard]] Status set_presence(StreamId id, Decoder& decoder);
   [[nodiscard]] bool presence_holds(const StreamId& stream, std::uint32_t block) const;
@@ -54,19 +54,19 @@ struct Client::State {
   Interest interest;
   std::uint32_t generation = 0;            ///< of the volumes
   std::vector<DescribedVolume> described;  ///< of the session, as frame.volumes
-  std::uint64_t instances = 0;             ///< volumes that there were
+  std::uint64_t instances = 0;             ///< volumes so far, see ClientVolume::instance
   ClientFrame frame;
-  unsigned frames = 1;  ///< that are going to be copies of it, itself included
+  unsigned frames = 1;  ///< copies of the frame that the program holds, itself included
   std::map<StreamId, Chain> chains;
   std::shared_ptr<DecoderScratch> decoding;
-  std::vector<std::uint32_t> places;  ///< where the blocks that a packet changed are
+  std::vector<std::uint32_t> places;  ///< in the volume, of blocks that a packet changed
   struct {
-    std::vector<std::uint32_t> replaced, places;  ///< blocks of a chain, and where they are
-  } read_lists;                                   ///< of read()
-  /// Blocks of streams that say which records exist, of the update that is being applied.
+    std::vector<std::uint32_t> replaced, places;  ///< blocks of a chain, and places in the volume
+  } read_lists;                                   ///< scratch of read()
+  /// Blocks of presence in the update that is being applied.
   std::vector<std::pair<StreamId, std::uint32_t>> told_presence;
   std::vector<Message> replies;
-  std::uint64_t asked = 0, heard = 0;  ///< bytes over this connection: of Resyncs, and received
+  std::uint64_t asked = 0, heard = 0;  ///< bytes of Resyncs, and received, over this connection
   Goodbye goodbye;
   ClientStatistics statistics;
 };

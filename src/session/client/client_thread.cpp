@@ -1,5 +1,5 @@
-// A client on a thread of its own. The lock guards the queue and the replies; nothing is decoded
-// and no frame is handed over under it.
+// A client on a thread of its own. The lock guards the queue and the replies. Decoding and frames
+// do without it.
 #include <gicodec/client.h>
 
 #include "base/guard.h"
@@ -32,13 +32,13 @@ struct ClientThread::State {
   void rest(std::unique_lock<std::mutex>& lock);
   Status follow_volumes();
   Status show(ClientFrame& to) const;
-  /// Decodes one message; without the lock.
+  /// Decodes one message. The caller does not hold the lock.
   Status work(const Message& message);
 
-  std::optional<Client> client;  ///< the worker's while `busy`, else of whoever has the lock
+  std::optional<Client> client;  ///< for the worker while `busy`, else guarded by the lock
   Options options;
-  bool texels = true;       ///< of the frames; the client's own has none
-  std::uint64_t shown = 0;  ///< serial of the frame that was handed over last
+  bool texels = true;       ///< frames have texels; the client's own frame has none
+  std::uint64_t shown = 0;  ///< serial of the last finished frame
   TripleBuffer<ClientFrame> frames;
 
   mutable std::mutex mutex;
@@ -47,18 +47,17 @@ struct ClientThread::State {
   std::size_t waiting_bytes = 0;
   std::vector<Message> replies;
   Interest interest;                        ///< instead of the client's
-  std::optional<std::uint32_t> generation;  ///< that they know; nothing: there is no session
+  std::optional<std::uint32_t> generation;  ///< that `interest` knows; nullopt: no session
   Status status = Status::ok;
   Goodbye goodbye;
   ClientStatistics statistics;
   bool busy = false, stop = false;
-  std::atomic<bool> cancel{false};  ///< the message being decoded
+  std::atomic<bool> cancel{false};  ///< cancels the message being decoded
 
   std::thread thread;
 };
 
-/// Makes `to`, one of the frames, what the client holds: its texels come from where they were
-/// decoded.
+/// Makes `to`, one of the frames, equal to what the client holds. Reads texels from the decoders.
 Status ClientThread::State::show(ClientFrame& to) const {
   const std::uint64_t before = to.serial;
   const Status copied = copy_changes(client->frame(), to);
@@ -76,7 +75,7 @@ Status ClientThread::State::show(ClientFrame& to) const {
     }
     return Status::ok;
   });
-  if (filled != Status::ok) to.serial = before;  // Its texels are of then, or none.
+  if (filled != Status::ok) to.serial = before;  // Some texels are still of that serial.
   return filled;
 }
 
@@ -85,7 +84,7 @@ Status ClientThread::State::work(const Message& message) {
   const std::uint64_t now = client->frame().serial;
   if (result != Status::ok || !client->consistent() || now == shown) return result;
   const Status copied = show(frames.back());
-  if (copied != Status::ok) return copied;  // The next message may show it.
+  if (copied != Status::ok) return copied;  // The next message tries again.
   shown = now;
   frames.publish();
   return Status::ok;
@@ -133,7 +132,7 @@ Result<ClientThread> ClientThread::start(Client&& client, const Options& options
     auto state = std::make_unique<State>(options);
     state->thread = std::thread([raw = state.get()] { raw->run(); });
     Client::State& of_client = *client.state_;
-    of_client.frames += 2;  // Three, instead of its own.
+    of_client.frames += 2;  // Three frames instead of one.
     state->texels = std::exchange(of_client.options.texels, false);
     for (ClientVolume& volume : of_client.frame.volumes) {
       for (ClientTexture& texture : volume.textures) std::vector<std::byte>().swap(texture.texels);
@@ -141,14 +140,14 @@ Result<ClientThread> ClientThread::start(Client&& client, const Options& options
     if (of_client.options.cancel == nullptr) of_client.options.cancel = &state->cancel;
     state->interest = std::move(of_client.interest);
     of_client.interest = {};
-    state->client = std::move(client);  // The thread looks at it when there is a message.
+    state->client = std::move(client);  // The thread uses it once there is a message.
     return ClientThread(std::move(state));
   });
 }
 
 Result<ClientThread> ClientThread::start(Client&& client) { return start(std::move(client), {}); }
 
-/// What waits is dropped, what is being decoded is cancelled.
+/// Drops the queue, and cancels the message being decoded.
 void ClientThread::State::rest(std::unique_lock<std::mutex>& lock) {
   waiting.clear();
   waiting_bytes = 0;
@@ -159,7 +158,7 @@ void ClientThread::State::rest(std::unique_lock<std::mutex>& lock) {
   generation.reset();
 }
 
-/// Says the interest to a session that begins, and forgets those that its volumes have outlived.
+/// Sends the interest to a new session; drops interest in volumes that have gone.
 Status ClientThread::State::follow_volumes() {
   if (!client->is_connected()) return Status::ok;
   const std::uint32_t now = client->state_->generation;

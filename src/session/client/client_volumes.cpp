@@ -1,4 +1,4 @@
-// The volumes of a Client: those of a session that begins or goes on, and those that come and go.
+// The volumes of a Client: from the Welcome of a session, and as they come and go.
 #include "base/guard.h"
 #include "session/client/client_frame.h"
 #include "session/client/client_limits.h"
@@ -44,11 +44,11 @@ Status Client::State::take(const Welcome& said) {
   return replied == Status::ok ? interest.begin(generation, frame.volumes, replies) : replied;
 }
 
-/// A session that begins: the server takes everything for zero.
+/// Begins a session: the client holds nothing, all blocks are zero.
 Status Client::State::begin(const Welcome& said) {
   auto volumes = volumes_of(said.volumes, options, frames);
   if (!volumes) return volumes.status();
-  // What decoded the last one goes first, so that both together take no more than one.
+  // Frees the decoders of the last session first, so that memory stays within the limit.
   chains.clear();
   auto scratch_of_session = DecoderScratch::create();
   if (!scratch_of_session) return scratch_of_session.status();
@@ -77,7 +77,7 @@ Status Client::State::take(const Volumes& said) {
   return interest.change(generation, frame.volumes);
 }
 
-/// True if the volumes that go on are as they were, wherever they have scrolled.
+/// True if the volumes in both lists have not changed, apart from scrolling.
 bool Client::State::describes(std::span<const DescribedVolume> said) const {
   return std::all_of(said.begin(), said.end(), [&](DescribedVolume volume) {
     const DescribedVolume* const held = find(described, volume.id, volume.added);
@@ -87,8 +87,8 @@ bool Client::State::describes(std::span<const DescribedVolume> said) const {
   });
 }
 
-/// Keeps what it has of the volumes that go on; others go first, so that there is room for those
-/// that come. out_of_memory: of these there is none.
+/// Keeps the contents of volumes in both lists. Drops old volumes before it adds new ones, so that
+/// memory stays within the limit. out_of_memory: the new ones are not added.
 Status Client::State::follow(std::span<const DescribedVolume> said) {
   if (!describes(said)) return Status::corrupt;
   auto volumes = volumes_of(said, options, frames);

@@ -1,4 +1,4 @@
-// What a client wants to see, said to every session that it has.
+// Interest: what a client wants to see. Each new session gets it.
 #pragma once
 
 #include <gicodec/client.h>
@@ -16,20 +16,20 @@ namespace gicodec {
 
 class Interest {
  public:
-  /// Keeps a wish, and appends its message to `out` if there is a session. After out_of_memory, or
-  /// invalid_argument for numbers that are no viewpoint, all is as it was.
+  /// Keeps the viewpoint, and appends its message to `out` if there is a session. out_of_memory and
+  /// invalid_argument (out of range) change nothing.
   Status set_viewpoint(const Viewpoint& viewpoint, std::vector<Message>& out);
-  /// unknown_volume, unknown_group or mask_mismatch if there is a session; else that shows later.
+  /// As set_viewpoint(). In a session also: unknown_volume, unknown_group, mask_mismatch.
   Status subscribe(std::uint16_t volume, std::span<const std::uint8_t> blocks, std::uint8_t group,
                    std::vector<Message>& out);
 
-  /// A session with these volumes, of that generation: says all that was wished, but for what does
-  /// not fit them any more, which is forgotten.
+  /// Begins a session with these volumes: appends the messages of all interest to `out`, and drops
+  /// interest that does not fit the volumes.
   Status begin(std::uint32_t generation, std::span<const ClientVolume> volumes,
                std::vector<Message>& out);
-  /// It has these now. What was wished of one that has gone is forgotten.
+  /// The session has other volumes. Drops interest in those that have gone.
   Status change(std::uint32_t generation, std::span<const ClientVolume> volumes);
-  /// Until the next one there is none.
+  /// Ends the session.
   void end() noexcept { there_is_session_ = false; }
 
  private:

@@ -1,5 +1,5 @@
-// What a client applied → container. The recording keeps for each stream where its chain of packets
-// stands, so that nothing gets into it which does not build on what is there.
+// Packets that a client applied → container. The recorder tracks the state of each stream in the
+// container, and adds only packets that build on it.
 #include <gicodec/recorder.h>
 
 #include <gicodec/encoder.h>
@@ -21,12 +21,12 @@ namespace {
 constexpr std::size_t kMaxOfContainer = 256;  ///< volumes, and textures
 constexpr std::uint64_t kFreeSnapshots = std::uint64_t{64} << 20, kSnapshotRatio = 16;
 
-/// Where a stream stands: at the client, and under which checksum in the container.
+/// The state of a stream: at the client, and its checksum in the container.
 struct Recorded {
   std::uint32_t sequence = 0, checksum = 0, checksum_here = 0;
 };
 
-/// A packet with another texture id and base.
+/// Copies a packet with another texture id and base; returns its checksum.
 std::uint32_t readdress(const PacketParts& parts, std::uint8_t texture_id, std::uint32_t base,
                         Packet& out) {
   PacketHead head{.info = parts.info,
@@ -46,7 +46,7 @@ struct ClientRecorder::State {
   explicit State(ContainerWriter&& container) : writer(std::move(container)) {}
 
   struct Placed {
-    std::uint64_t frame;  ///< counted from the update's first
+    std::uint64_t frame;  ///< counted from the update's first frame
     const UpdateMessage::Part* part;
   };
   Status add(const Client::State& client, std::span<const UpdateMessage::Part> packets);
@@ -62,8 +62,8 @@ struct ClientRecorder::State {
     return !presence || recorded.count(*presence) != 0;
   }
   [[nodiscard]] bool stands_at(StreamId id, const Decoder& decoder) const;
-  /// The first snapshot of a stream is free; others are no more than some times what was received,
-  /// or a server could have few bytes written as very many.
+  /// True if the stream may have a snapshot. The first of a stream is free; further ones are
+  /// limited, or a server could cause many bytes of container by few bytes of messages.
   [[nodiscard]] bool may_make_up_for(StreamId id) const {
     return begun.count(id) == 0 || repeated <= kFreeSnapshots + kSnapshotRatio * received;
   }
@@ -75,12 +75,12 @@ struct ClientRecorder::State {
   std::map<std::uint16_t, std::uint32_t> first_texture;  ///< by the volume's id
   std::uint64_t began = 0;
   std::uint32_t generation = 0;
-  std::uint32_t sync = 0;  ///< of the client at the last update; another one: it missed something
+  std::uint32_t sync = 0;  ///< of the client at the last update; if it differs, packets were lost
   std::uint64_t next_frame = 0, frame = 0;
   std::map<StreamId, Recorded> recorded;
   std::set<StreamId> waiting;
-  std::set<StreamId> begun;                  ///< that had a snapshot
-  std::uint64_t received = 0, repeated = 0;  ///< bytes of packets, and of further snapshots
+  std::set<StreamId> begun;                  ///< streams that had a snapshot
+  std::uint64_t received = 0, repeated = 0;  ///< bytes of packets, and of repeated snapshots
   Packet packet;                             ///< being written
 };
 
@@ -142,7 +142,7 @@ bool ClientRecorder::State::stands_at(StreamId id, const Decoder& decoder) const
          found->second.checksum == decoder.checksum();
 }
 
-/// Streams that moved on in an update which came to nothing: their packets are not here.
+/// Drops streams that moved on by packets the recorder did not get, in an update that failed.
 void ClientRecorder::State::forget_others(const Client::State& client,
                                           const std::set<StreamId>& updated) {
   std::erase_if(recorded, [&](const auto& entry) {
@@ -156,7 +156,8 @@ Status ClientRecorder::State::write(StreamId id, std::span<const std::byte> byte
   return writer.add(frame, bytes, id.region);
 }
 
-/// Adds a packet if it follows from what is there; else its stream is not recorded any more.
+/// Adds a packet if it builds on the stream's state in the container; else stops recording the
+/// stream.
 Status ClientRecorder::State::add(const Client::State& client, const UpdateMessage::Part& part) {
   const StreamId id = part.stream;
   const auto parts = parse_packet(part.packet);
@@ -184,7 +185,7 @@ Status ClientRecorder::State::add(const Client::State& client, const UpdateMessa
   return status;
 }
 
-/// A keyframe of what the client holds of a stream, from which its next packets follow.
+/// Adds a snapshot of what the client holds of a stream, on which its next packets build.
 Status ClientRecorder::State::add_snapshot(const Client::State& client, StreamId id,
                                            const Chain& chain) {
   const Decoder& decoder = chain.decoder;
@@ -222,7 +223,7 @@ Status ClientRecorder::State::add_snapshot(const Client::State& client, StreamId
   return Status::ok;
 }
 
-/// Gives a stream that is not where the client is a keyframe, if one can be made.
+/// Adds a snapshot of a stream that lacks packets, if one can be made; else the stream waits.
 Status ClientRecorder::State::catch_up(const Client::State& client, StreamId id) {
   const auto found = client.chains.find(id);
   waiting.erase(id);
@@ -237,15 +238,15 @@ Status ClientRecorder::State::catch_up(const Client::State& client, StreamId id)
   return Status::ok;
 }
 
-/// In which frame of the update each packet goes: a frame has one of a stream, and what says which
-/// records exist before all that goes by it.
+/// The frame of each packet. A frame has at most one packet of a stream, and presence comes before
+/// the packets that depend on it.
 std::vector<ClientRecorder::State::Placed> ClientRecorder::State::place(
     const Client::State& client, std::span<const UpdateMessage::Part> packets) {
   struct Last {
     std::uint64_t frame = 0;
-    std::set<StreamId> streams = {};  ///< in it
+    std::set<StreamId> streams = {};  ///< in the frame
   };
-  std::map<StreamId, Last> groups;  ///< by what says which records exist
+  std::map<StreamId, Last> groups;  ///< by the stream that holds the presence
   std::vector<Placed> placed;
   for (const UpdateMessage::Part& part : packets) {
     const StreamId id = part.stream, group = client.presence_of(id).value_or(id);
@@ -266,7 +267,7 @@ Status ClientRecorder::State::add(const Client::State& client,
                                   std::span<const UpdateMessage::Part> packets) {
   const bool all = sync != client.sync;
   if (packets.empty() && !all) return Status::ok;
-  sync = 0;  // Of no client: until all is added, the next call has to look at every stream.
+  sync = 0;  // Until all is added: after an error the next call checks every stream.
   for (const UpdateMessage::Part& part : packets) received += part.packet.size();
   const std::vector<Placed> placed = place(client, packets);
   const std::uint64_t first = std::max(client.frame.update, next_frame);
@@ -285,7 +286,7 @@ Status ClientRecorder::State::add(const Client::State& client,
     if (const Status status = add(client, *one.part); status != Status::ok) return status;
   }
   frame = first + last;
-  // What says which records exist comes before what goes by it.
+  // Presence comes before the streams that depend on it.
   for (const bool goes_by : {false, true}) {
     for (const StreamId id : streams) {
       if (client.presence_of(id).has_value() != goes_by) continue;

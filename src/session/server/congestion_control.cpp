@@ -7,16 +7,16 @@ namespace gicodec {
 namespace {
 
 constexpr double kMin = 2 << 10;
-// Queues, in intervals. Together with an update's own time they stay below three.
+// Queueing delays, in intervals between updates. With an update's own time they stay below three.
 constexpr double kEmpty = 0.5;  ///< up to here budgets grow fast, those of new clients faster still
 constexpr double kGood = 1;     ///< up to here they grow evenly, so that shares become even
 constexpr double kFull = 1.5;   ///< from here on they shrink
-constexpr double kTooLate = 1.75;  ///< nothing is made while something is on its way for longer
+constexpr double kTooLate = 1.75;  ///< no update while an older one is in flight for longer
 constexpr double kShrink = 0.85, kShrinkOfMany = 0.7, kMany = 2, kMaxShrink = 0.1;
 constexpr double kGrowth = 0.05;  // of the mean
 constexpr double kMaxGrowth = 0.25;
 constexpr double kMax = 1 << 30;
-/// Seconds after which a path that was never idle is left idle, to see how long that takes.
+/// Seconds after which the server lets a busy path become idle, to measure it again.
 constexpr double kLookAgain = 10;
 
 }  // namespace
@@ -25,12 +25,12 @@ double next_unicast_block_limit(double before, const WrittenBlocks& written, dou
                                 double most) noexcept {
   constexpr double kMinBlocks = 1.0 / 64, kNoLimit = 1 << 30, kAim = 0.7, kMinStep = 1.0 / 16,
                    kMaxStep = 1.25;
-  // Packets for all take what they need. They do not starve those for few, who get this at least.
+  // Packets for all take what they need, but leave this share of the time to packets for few.
   constexpr double kMinShare = 0.15;
   const auto few = static_cast<double>(written.unicast);
   if (before == 0 && (seconds <= most || few == 0)) return 0;
-  // Looking for blocks takes as long however few are written.
-  constexpr double kLooks = 64;  // cost about as much as writing one
+  // Examining blocks takes the same time however few are written.
+  constexpr double kLooks = 64;  // blocks examined in the time of writing one
   const double all =
       static_cast<double>(written.all) + static_cast<double>(written.examined) / kLooks;
   const double spent = all > 0 ? seconds * few / all : 0;
@@ -74,7 +74,7 @@ void CongestionControl::acknowledged(const Sent& update, double now, double inte
   if (update.made < changed_ || interval <= 0) return;
   const double queue = (latency - idle_) / interval;
   if (queue > kFull) {
-    // What was before it in the queue has arrived meanwhile.
+    // Bytes that were queued before this update have arrived meanwhile.
     const double rate = static_cast<double>(delivered_ - update.delivered) / (latency - idle_);
     const double shrink = bytes_ > kMany * mean ? kShrinkOfMany : kShrink;
     bytes_ = std::clamp(shrink * rate * interval, kMaxShrink * bytes_, shrink * bytes_);
@@ -82,11 +82,11 @@ void CongestionControl::acknowledged(const Sent& update, double now, double inte
   } else if (!update.limited || queue > (update.alone ? kFull : kGood)) {
     return;
   } else if (queue <= kEmpty && (starting_ || bytes_ <= mean)) {
-    // A small update says little of what a path carries.
+    // A small update says little about the path's capacity.
     const bool much = static_cast<double>(update.bytes) >= bytes_ / 2;
     bytes_ *= !starting_ ? 1 + kMaxGrowth : much ? 2 : 1;
   } else {
-    // As fast for long ways as for short ones.
+    // Budgets grow as fast on long paths as on short ones.
     bytes_ +=
         std::clamp(kGrowth * mean * std::max(1.0, idle_ / interval), kMin / 4, kMaxGrowth * bytes_);
   }

@@ -1,4 +1,4 @@
-// A server: what changed is published, and packets are made of it.
+// The calls of a Distributor: publish() takes contents, update() makes packets of what changed.
 #include "session/server/distributor.h"
 
 #include "backend/find_backend.h"
@@ -21,7 +21,7 @@ bool ServedTexture::outdated(const UpdateStream& stream, std::uint32_t block) co
   const float threshold = rule == Threshold::exact ? 0 : options.threshold;
   const bool same = history.same_records(held, now);
   if (!same && !(threshold > 0)) return true;
-  // A guard band that is or was stale, and another presence, count as changes of their own.
+  // Stale guard bands, or another presence, count as changes whatever the threshold.
   const auto exists = history.presence(now), existed = history.presence(held);
   if (!history.stale_band(held).empty() || !history.stale_band(now).empty() ||
       !std::equal(exists.begin(), exists.end(), existed.begin())) {
@@ -100,7 +100,7 @@ Status Distributor::publish(std::uint16_t volume, std::uint8_t texture, ConstTex
   });
 }
 
-/// Ascending, with those that are to be read in any case.
+/// Lists the blocks to read, ascending: `listed`, and the unread ones.
 Status Reading::choose(const BlockMask& unread, std::span<const std::uint32_t> listed) {
   read = unread;
   seen.assign(unread.size(), 0);
@@ -167,7 +167,7 @@ Status Distributor::publish(std::uint16_t volume, std::uint8_t texture, ConstTex
 
 Status Distributor::update() {
   struct Job {
-    ServedClient* client;  ///< or, if null, a region
+    ServedClient* client;  ///< null: the job is a region
     ServedVolume* volume;
     Bundle* bundle;
     std::uint32_t region;
@@ -201,8 +201,8 @@ Status Distributor::update() {
     state.refresh_dependencies();
     state.refresh_interest();
     std::vector<Status> results(jobs.size(), Status::ok);
-    // From here on there is an update. Who cannot be served stays as he is, and has pending what
-    // changed.
+    // From here on there is an update. Clients that cannot be served hold what they held; their
+    // blocks stay pending.
     ++state.updates;
     for (const auto& volume : state.volumes) volume->choose_due(state.updates);
     state.gather_subscribers();

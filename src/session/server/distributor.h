@@ -1,6 +1,6 @@
-// Streaming server (Stengel et al. §3.4) without a transport: textures of volumes go in,
-// packets for every client come out. It knows what each client holds, finds what changed since,
-// keeps to what the client sees and may receive, and knows what is pending.
+// Distributor: the server below its messages (Stengel et al. §3.4). Textures of volumes go in,
+// packets for every client come out. It knows what each client holds, sees and may receive, and
+// which blocks are pending.
 #pragma once
 
 #include <gicodec/backend.h>
@@ -24,12 +24,12 @@ struct DistributorOptions {
   BackendSettings settings = {};
   std::vector<const Backend*> backends = {};  ///< further ones; must outlive the server
   Threads threads = {};                       ///< of publish() and update()
-  /// Blocks per region of shared streams, at most; of a pool x · y · z slots. All zeros: by the
-  /// size of a volume's blocks, usual_region().
+  /// Largest region of shared streams, in blocks along each axis; in a pool, x · y · z slots. All
+  /// zeros: usual_region().
   Grid region{4, 4, 4};
   std::uint32_t max_clients = 4096;
-  bool all_visible = false;  ///< what clients see until told otherwise; false: nothing
-  /// Updates of a texture that a client may leave unacknowledged and still take back by resume().
+  bool all_visible = false;  ///< clients see everything until set_visible(); false: nothing
+  /// Updates of a texture that a client may leave unacknowledged and still revert by resume().
   std::uint32_t max_unacknowledged = 32;
 };
 
@@ -41,7 +41,7 @@ struct ClientState {
   std::uint32_t oldest_pending = 0;  ///< updates since the first of them changed
 };
 
-/// One thread at a time. update() uses further threads if told to.
+/// One thread at a time. update() uses DistributorOptions::threads.
 class Distributor {
  public:
   /// Errors: unknown_backend, invalid_settings, invalid_argument.
@@ -50,82 +50,67 @@ class Distributor {
   Distributor& operator=(Distributor&&) noexcept;
   ~Distributor();
 
-  /// Adds a volume, whose geometry has the grid of its first group; returns its number. Textures
-  /// that are not named: as StreamedTexture has it. Layouts are those of the views to come.
-  /// `described`: what else is told of it: all but number, geometry and region.
+  /// As Server::add_volume(). `described`: the description for clients; number, geometry and region
+  /// are filled in.
   [[nodiscard]] Result<std::uint16_t> add_volume(const VolumeDesc& volume,
                                                  const VolumeGeometry& geometry,
                                                  std::span<const StreamedTexture> textures = {},
                                                  DescribedVolume described = {});
-  /// Its number may be given to another volume afterwards. `generation`: that of the list without
-  /// it.
+  /// `generation`: that of the list without the volume.
   Status remove_volume(std::uint16_t volume, std::uint32_t generation = 0);
-  /// The volumes by number, with those that were removed; until the next change.
+  /// The volumes by number, removed ones included. Valid until a volume is added or removed.
   [[nodiscard]] std::span<const std::unique_ptr<ServedVolume>> table() const noexcept;
-  /// The texture's contents from the next update on. A texture that is the presence of others comes
-  /// before them, and all of them before the next update, which answers presence_missing else.
+  // As in Server.
   Status publish(std::uint16_t volume, std::uint8_t texture, ConstTextureView view);
-  /// The same where nothing but the listed blocks may have changed: no others are looked at, but
-  /// for those that never were, that entered by scrolling, or whose presence changed.
-  /// block_out_of_range, block_repeated.
   Status publish(std::uint16_t volume, std::uint8_t texture, ConstTextureView view,
                  std::span<const std::uint32_t> blocks);
-  /// Moves a camera-locked volume: the groups with the geometry's grid. Blocks of planes that enter
-  /// are sent anew, whatever is known of them; publish the textures with those planes before the
-  /// next update. Masks of active and visible blocks are not changed. unsupported_backend if the
-  /// backend is stateful.
   Status scroll(std::uint16_t volume, const Scroll& scroll);
   [[nodiscard]] std::size_t volumes() const noexcept;
-  /// Where a volume stands now.
   [[nodiscard]] Result<VolumeGeometry> geometry(std::uint16_t volume) const noexcept;
-  /// Blocks of a group that are sent at all; empty for all of them.
   Status set_active(std::uint16_t volume, std::span<const std::uint8_t> active,
                     std::uint8_t group = 0);
 
-  /// A client holds nothing at first. limit_exceeded beyond max_clients.
+  /// Adds a client, which holds nothing. limit_exceeded beyond max_clients.
   [[nodiscard]] Result<ClientId> connect(Delivery delivery = Delivery::unicast, Budget budget = {});
   Status disconnect(ClientId client);
   Status set_budget(ClientId client, Budget budget);
-  /// What the client sees of a group: one byte per block, e.g. by add_shading_probes(). Blocks that
-  /// visible ones depend on are seen too.
+  /// Sets which blocks of a group the client sees: one byte per block. Blocks that visible ones
+  /// depend on become visible too.
   Status set_visible(ClientId client, std::uint16_t volume, std::span<const std::uint8_t> visible,
                      std::uint8_t group = 0);
-  /// A client that cannot take packets now: none are made for it until told otherwise. What changes
-  /// meanwhile stays pending; of shared regions that went on without it, it gets what it lacks
-  /// afterwards: differences as long as what it holds is kept, else snapshots.
+  /// Makes no packets for a suspended client. Blocks that change meanwhile stay pending; of shared
+  /// regions it later gets a catch-up if its state is still kept, else a snapshot.
   Status suspend(ClientId client, bool suspended);
-  /// The client has applied everything of a stream up to this sequence. Of shared streams nothing
-  /// needs to be told.
+  /// The client has applied all packets of a stream up to this sequence. Shared streams need no
+  /// such call.
   Status acknowledge(ClientId client, StreamId stream, std::uint32_t sequence);
-  /// The client holds the state after this packet of a stream, given by sequence and checksum, and
-  /// nothing later; 0 and 0 for none. What is missing is sent by and by, as a keyframe only if
-  /// that state is not known any more. Of a region that it does not subscribe to this counts once
-  /// it does.
+  /// The client holds the state of a stream after the packet of this sequence and checksum, and
+  /// nothing later; 0 and 0: it holds nothing. The next updates send what it lacks, with a keyframe
+  /// only if that state is no longer known. For a region to which the client does not subscribe,
+  /// this applies once it does.
   Status resume(ClientId client, StreamId stream, std::uint32_t sequence, std::uint32_t checksum);
 
-  /// Most blocks of one update in packets of shared streams that are made for few: snapshots for
-  /// those who join, differences for those who take fewer updates. One packet always is made; who
-  /// has to wait is made up for later. 0: no limit, as at first.
+  /// Limits the blocks of an update in snapshots and catch-ups of shared streams. One packet is
+  /// always made. Clients beyond the limit wait. 0, the default: no limit.
   void set_unicast_block_limit(std::uint32_t blocks) noexcept;
-  /// Makes the next packets for all clients. Those of the last update are dropped. After an error
-  /// (out_of_memory, or one of the backend) who could not be served has no packets, holds what he
-  /// held, and has pending what changed: the next update() makes up for it.
+  /// Makes the next packets for all clients and drops those of the last update. After an error
+  /// (out_of_memory, or one of the backend) clients that could not be served have no packets and
+  /// hold what they held; their blocks stay pending for the next update().
   Status update();
-  /// What the last update has for a client, in the order in which it must be applied.
+  /// The last update's packets for a client, in the order in which the client must apply them.
   [[nodiscard]] std::span<const OutgoingPacket> packets(ClientId client) const noexcept;
 
-  /// True if the last update would have had more for the client with a budget of more bytes.
+  /// True if the budget's bytes kept blocks out of the last update.
   [[nodiscard]] bool held_back(ClientId client) const noexcept;
-  /// False if the last update that could have had unicast packets for the client had nothing for
-  /// it.
+  /// False if the last update with room for unicast packets found nothing pending for the client.
   [[nodiscard]] bool has_pending(ClientId client) const noexcept;
 
   [[nodiscard]] Result<ClientState> state(ClientId client) const;
   [[nodiscard]] std::size_t memory_of(ClientId client) const noexcept;  ///< bytes held for it
-  /// Of shared delivery: blocks of the regions that the client sees and was not sent as they are.
+  /// Shared delivery: blocks of the client's regions whose current contents were not sent.
   [[nodiscard]] std::uint32_t pending_shared(ClientId client) const noexcept;
   /// Decoder::state_hash() of a client that applied everything. invalid_argument for a stream that
-  /// it does not have, or of which it is not known what it holds.
+  /// it does not have, or if it is not known what the client holds.
   [[nodiscard]] Result<std::uint64_t> state_hash(ClientId client, StreamId stream) const;
   [[nodiscard]] const DistributorOptions& options() const noexcept;
   [[nodiscard]] std::uint64_t updates() const noexcept;
@@ -139,7 +124,7 @@ class Distributor {
   std::unique_ptr<State> state_;
 };
 
-/// What is said of each texture, by texture id. unknown_texture; invalid_name for one named twice.
+/// The options of each texture, by texture id. unknown_texture; invalid_name for one named twice.
 [[nodiscard]] Result<std::vector<StreamedTexture>> by_texture(
     const VolumeDesc& volume, std::span<const StreamedTexture> textures);
 

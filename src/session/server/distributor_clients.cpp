@@ -1,4 +1,4 @@
-// What a Distributor is asked about its clients: who is there, what they see, what they hold.
+// The clients of a Distributor: which there are, what they see, what they hold.
 #include "base/guard.h"
 #include "session/server/distributor_state.h"
 
@@ -21,7 +21,7 @@ UpdateStream* Distributor::State::find(ServedClient& client, StreamId id) {
   return nullptr;
 }
 
-/// Room for a volume in a client's tables.
+/// Adds a volume to a client's tables.
 Status Distributor::State::add_volume_to(ServedClient& client, ServedVolume& volume) {
   const std::size_t id = volume.id(), places = std::max(volumes.size(), id + 1);
   client.backlog = {};
@@ -148,7 +148,7 @@ Status Distributor::resume(ClientId client, StreamId stream, std::uint32_t seque
   }
   UpdateStream* const unicast = state_->find(*found, stream);
   if (unicast == nullptr) return Status::invalid_argument;
-  // What a backend remembers cannot be taken back.
+  // A stateful backend cannot go back to an earlier state.
   if (state_->is_stateful && sequence != unicast->sequence()) {
     unicast->request_keyframe();
   } else {
@@ -167,7 +167,7 @@ Result<std::uint64_t> Distributor::state_hash(ClientId client, StreamId stream) 
              unicast != nullptr && !unicast->keyframe_next()) {
     held = &unicast->state();
   }
-  // Before its keyframe it is not known what a client holds.
+  // It is not known what a client holds before its keyframe.
   if (held == nullptr) return Status::invalid_argument;
   return held->hash();
 }
@@ -193,7 +193,7 @@ Result<ClientState> Distributor::state(ClientId client) const {
   ClientState totals = found->totals;
   const auto updates = static_cast<std::uint32_t>(state_->updates);
   for (const UnicastBundle& unicast : found->unicast) {
-    // Not all is looked at in each update.
+    // pending_since is not up to date for blocks that the last update did not examine.
     const BlockMask* const interest = unicast.bundle->due && found->knows_interest(unicast)
                                           ? &found->interest_in(unicast)
                                           : nullptr;
@@ -229,8 +229,8 @@ std::size_t Distributor::memory_of(ClientId client) const noexcept {
   return bytes;
 }
 
-/// Subscribes to the regions of which the client sees a block, to all of a bundle whose blocks are
-/// dependencies of those of such regions, and to no others.
+/// Subscribes the client to the regions with a visible block, to all regions of bundles that blocks
+/// of subscribed regions depend on, and to no others.
 void Distributor::State::set_joins(ServedClient& client, const ServedVolume& volume) noexcept {
   for (std::size_t l = volume.bundles.size(); l-- > 0;) {
     const Bundle& bundle = *volume.bundles[l];

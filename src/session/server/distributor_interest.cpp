@@ -1,5 +1,5 @@
-// What blocks depend on, and since when receivers may lack it; which blocks are pending for a
-// unicast client, and how much each of them matters.
+// The dependencies of blocks, and since when clients may lack them; the pending blocks of a unicast
+// client, and their weights.
 #include "quantise/block_difference.h"
 #include "session/server/distributor_state.h"
 
@@ -12,7 +12,7 @@
 namespace gicodec {
 namespace {
 
-/// What a client sees of a volume, and what blocks that it sees depend on.
+/// Adds the blocks that visible blocks depend on.
 Masks with_dependencies(const ServedVolume& volume, Masks interest) {
   for (std::size_t group = interest.size(); group-- > 0;) {
     const TextureGroup& of = volume.desc.groups[group];
@@ -35,7 +35,7 @@ bool Dependencies::stale() const noexcept {
 
 void Dependencies::refresh(const TextureGroup& group, const BlockHistory& first,
                            std::uint32_t limit) {
-  constexpr std::uint32_t kFew = 16;  // Room for more is made where it is needed.
+  constexpr std::uint32_t kFew = 16;  // Grows where a block has more.
   std::vector<std::size_t> begin;
   std::vector<std::uint32_t> blocks, room(kFew);
   begin.reserve(begin_.size());
@@ -91,7 +91,7 @@ void Bundle::forget_held() noexcept {
   }
 }
 
-/// In order: what blocks depend on comes before them.
+/// Dependencies come before the bundles that depend on them.
 void ServedVolume::choose_due(std::uint64_t update) noexcept {
   for (const auto& bundle : bundles) {
     bundle->due =
@@ -105,7 +105,7 @@ void ServedVolume::choose_due(std::uint64_t update) noexcept {
   }
 }
 
-/// Where blocks depend on others: one of a texture is no longer what was current `before`.
+/// Where blocks depend on others: notes that `before` is no longer the current version of a block.
 void ServedVolume::note_change(Bundle& bundle, ServedTexture& texture, std::uint32_t block,
                                BlockId before, std::uint64_t update) noexcept {
   const auto last = static_cast<std::uint32_t>(update);
@@ -120,12 +120,12 @@ void ServedVolume::note_change(Bundle& bundle, ServedTexture& texture, std::uint
   }
 }
 
-/// What unicast clients want of a volume is to be found anew.
+/// Discards the interest of unicast clients in a volume, which refresh_interest() finds anew.
 void Distributor::State::forget_interest(const ServedVolume& volume) noexcept {
   for (const auto& [id, client] : clients) client->interest[volume.id()].reset();
 }
 
-/// Before an update: what the blocks depend on that were published since the last one.
+/// Before an update: reads the dependencies of the blocks published since the last one.
 void Distributor::State::refresh_dependencies() {
   for (const auto& volume : volumes) {
     for (const auto& bundle : volume->bundles) {
@@ -140,8 +140,8 @@ void Distributor::State::refresh_dependencies() {
   }
 }
 
-/// Then what unicast clients want of volumes where blocks depend on others: who sees the same, the
-/// same.
+/// After refresh_dependencies(): finds the interest of unicast clients in volumes where blocks
+/// depend on others. Clients that see the same blocks share it.
 void Distributor::State::refresh_interest() {
   const auto less = [](const Masks* a, const Masks* b) { return *a < *b; };
   for (const auto& volume : volumes) {
@@ -186,7 +186,7 @@ bool is_pending(const UnicastBundle& unicast, const BlockMask& interest,
          unicast.bundle->outdated(unicast.streams, block);
 }
 
-/// Since when a block is pending for the client, which is noted; 0: it is not.
+/// Notes and returns the update since which a block is pending for the client; 0: it is not.
 static std::uint32_t note_pending(ServedClient& client, UnicastBundle& unicast,
                                   const BlockMask& interest, std::uint32_t block,
                                   std::uint32_t now) noexcept {
@@ -203,7 +203,7 @@ static BlockMask due_bundles(const ServedClient& client) {
   return due;
 }
 
-/// What is left of the backlog; nothing if that is too little, or age does not decide alone.
+/// The rest of the backlog; nullopt if fewer than `most` blocks are left or other bundles are due.
 static std::optional<Pending> collect_backlog(ServedClient& client, std::uint32_t now,
                                               std::size_t most) {
   Backlog& backlog = client.backlog;
@@ -214,7 +214,7 @@ static std::optional<Pending> collect_backlog(ServedClient& client, std::uint32_
     UnicastBundle& unicast = client.unicast[at.bundle];
     const std::uint32_t since =
         note_pending(client, unicast, client.interest_in(unicast), at.block, now);
-    // What was sent meanwhile and is pending again is for the next look at all.
+    // A block that was sent and is pending again waits until all blocks are examined.
     if (since == 0 || since > backlog.update) return true;
     pending.candidates.push_back(candidate(client, at.bundle, at.block, now));
     return false;
@@ -227,13 +227,13 @@ static std::optional<Pending> collect_backlog(ServedClient& client, std::uint32_
 }
 
 Pending collect(ServedClient& client, std::uint64_t update, std::size_t most) {
-  // So that all blocks are looked at once in several updates.
+  // With so many times `most` blocks, the backlog lasts for several updates.
   constexpr std::size_t kAhead = 3;
   const auto now = static_cast<std::uint32_t>(update);
   if (auto pending = collect_backlog(client, now, most)) return *std::move(pending);
   client.backlog = {};
   Pending pending;
-  // As older() has it.
+  // The order of older().
   const auto age_of = [](const UnicastBundle& unicast, std::uint32_t block) {
     return std::uint64_t{unicast.pending_since[block]} << 32 | unicast.bundle->order[block];
   };
@@ -251,7 +251,7 @@ Pending collect(ServedClient& client, std::uint64_t update, std::size_t most) {
     }
     pending.blocks += (ages.size() - before) * unicast.streams.size();
   }
-  // Where age does not decide alone, all are looked at.
+  // With ranks, age alone does not decide, so all blocks are candidates.
   const std::size_t ahead = times(most, kAhead);
   std::uint64_t last = UINT64_MAX;
   if (!ranked && ahead < ages.size()) {
@@ -286,7 +286,7 @@ std::vector<Candidate> missing_dependencies(ServedClient& client, const Candidat
     if (other.volume != unicast.volume || !unicast.bundle->depends_on(*other.bundle)) continue;
     for (const std::uint32_t block :
          unicast.volume->dependencies[unicast.bundle->group_id][dependent.block]) {
-      // What is not pending is there, or not active.
+      // A block that is not pending is at the client already, or is not active.
       if (note_pending(client, other, client.interest_in(other), block, now) != 0 &&
           other.until(block, update) < unicast.pending_since[dependent.block]) {
         missing.push_back(candidate(client, i, block, now));
@@ -302,7 +302,7 @@ void weigh(const ServedClient& client, std::span<Candidate> candidates) {
     if (const auto rank = unicast.bundle->group->rank; rank != nullptr) {
       const float value =
           rank(unicast.bundle->first->records(unicast.bundle->first->current()[candidate.block]));
-      // What is no number, or negative, is the least.
+      // NaN and negative ranks count as 0.
       candidate.weight = value > 0 ? std::min(value, std::numeric_limits<float>::max()) : 0;
       continue;
     }

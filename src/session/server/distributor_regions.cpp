@@ -1,5 +1,5 @@
-// The streams of regions: how they move on, and what others need to follow them. Packets are made
-// once for all who subscribe.
+// The streams of regions: packets that move them on, and catch-ups and snapshots for clients that
+// hold other states. Each packet is made once for all subscribers.
 #include "base/guard.h"
 #include "session/server/distributor_state.h"
 
@@ -10,7 +10,7 @@
 namespace gicodec {
 namespace {
 
-/// True if the streams keep contents that are no longer current: of blocks that are not active, or
+/// True if the streams hold contents that are no longer current, of inactive blocks or of blocks
 /// that changed too little.
 bool holds_earlier(const SharedRegion& shared) noexcept {
   return std::any_of(shared.streams.begin(), shared.streams.end(), [](const UpdateStream& stream) {
@@ -21,8 +21,8 @@ bool holds_earlier(const SharedRegion& shared) noexcept {
   });
 }
 
-/// What those who hold an earlier state lack in any texture, so that it comes in all of them;
-/// nothing where that makes no difference.
+/// The blocks that clients in an earlier state lack in any texture; the packets of all textures
+/// have these. Empty where that makes no difference.
 BlockMask missing_of(const SharedRegion& shared, const Lagging* from,
                      std::span<const std::uint32_t> blocks) {
   BlockMask missing;
@@ -36,7 +36,7 @@ BlockMask missing_of(const SharedRegion& shared, const Lagging* from,
 
 }  // namespace
 
-/// Moves the streams on, or not at all; then makes what others need to follow them.
+/// Moves all streams on, or none; then makes the catch-ups and the snapshot of other states.
 Status Distributor::State::update_region(ServedVolume& volume, Bundle& bundle, std::uint32_t region,
                                          unsigned thread) {
   SharedRegion& shared = bundle.regions[region];
@@ -80,7 +80,7 @@ Status Distributor::State::update_region(ServedVolume& volume, Bundle& bundle, s
   return first;
 }
 
-/// Active blocks of a region that its streams do not hold as they are.
+/// Active blocks of a region whose current contents its streams do not hold.
 std::vector<std::uint32_t> Distributor::State::outdated_blocks(const ServedVolume& volume,
                                                                const Bundle& bundle,
                                                                const SharedRegion& shared) const {
@@ -92,8 +92,8 @@ std::vector<std::uint32_t> Distributor::State::outdated_blocks(const ServedVolum
   return blocks;
 }
 
-/// Packets in all textures for those who hold an earlier state, or nothing: those that move the
-/// streams on to `next`, or, if that is null, to where the streams are.
+/// Makes the packets of all textures for clients in the state `from`, or in none if null. They move
+/// the client on to the blocks `next`, or, if null, to the streams' state.
 Status Distributor::State::write(const Bundle& bundle, SharedRegion& shared, const Lagging* from,
                                  const std::vector<std::uint32_t>* next, unsigned thread,
                                  std::vector<Written>& written, Subscribers& subscribers) {
@@ -126,9 +126,9 @@ Status Distributor::State::write(const Bundle& bundle, SharedRegion& shared, con
   return Status::ok;
 }
 
-/// Moves the streams on to what changed, by packets for those who need some anyway: who is up to
-/// date, else some of those who lag, else those who wait. Who held the state before lags
-/// then.
+/// Moves the streams on to the changed blocks by packets for one group of subscribers: those up to
+/// date, else lagging ones with time for a catch-up, else waiting ones. Other subscribers of the
+/// streams' state then lag.
 Status Distributor::State::advance(const ServedVolume& volume, const Bundle& bundle,
                                    SharedRegion& shared, unsigned thread) {
   const auto anybody = [](const Lagging& lagging) { return lagging.subscribers.all > 0; };
@@ -140,7 +140,7 @@ Status Distributor::State::advance(const ServedVolume& volume, const Bundle& bun
   const auto blocks = outdated_blocks(volume, bundle, shared);
   if (blocks.empty() && known) return Status::ok;
 
-  // Room first, so that nothing can fail once there are packets.
+  // Allocates first, so that nothing can fail once there are packets.
   if (known) {
     Lagging before{.states = {}, .until = shared.until(updates - 1), .subscribers = {}};
     for (const UpdateStream& stream : shared.streams) before.states.push_back(stream.state());

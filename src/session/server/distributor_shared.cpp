@@ -1,5 +1,5 @@
-// Who subscribes to regions, what they hold, and which packets they are handed. Who comes late gets
-// a snapshot, who takes fewer updates than others gets catch-ups, and then the same packets as all.
+// The subscribers of regions, what they hold, and the packets they get. Late clients get a
+// snapshot, slower ones catch-ups, and then the same packets as the others.
 #include "base/guard.h"
 #include "session/server/distributor_state.h"
 
@@ -10,15 +10,14 @@
 namespace gicodec {
 namespace {
 
-/// States of a region that are kept for those who lag.
+/// States of a region kept for lagging clients.
 constexpr std::size_t kMaxLagging = 12;
-/// Catch-ups of a region in one update: as many as four groups at all rates need on average, and
-/// some.
+/// Catch-ups of a region in one update: more than four groups at all rates need on average.
 constexpr std::size_t kMaxCatchUps = 4;
-/// An update may be so much larger than the budget, which counts on average.
+/// An update may exceed the budget, which limits the average, by this factor.
 constexpr float kBurst = 2;
 
-/// True if the receiver of these joins, one per texture, holds the given states.
+/// True if the client of these joins, one per texture, holds the given states.
 bool holds(std::span<const Join> joins, std::span<const StreamState> states) noexcept {
   return std::equal(joins.begin(), joins.end(), states.begin(), states.end(),
                     [](const Join& join, const StreamState& state) {
@@ -26,7 +25,7 @@ bool holds(std::span<const Join> joins, std::span<const StreamState> states) noe
                     });
 }
 
-/// True if it holds what the streams sent last.
+/// True if the client of these joins holds the streams' state.
 bool is_current(const SharedRegion& shared, std::span<const Join> joins) noexcept {
   return std::equal(joins.begin(), joins.end(), shared.streams.begin(), shared.streams.end(),
                     [](const Join& join, const UpdateStream& stream) {
@@ -47,7 +46,7 @@ Subscribers& subscribers_of(SharedRegion& shared, std::span<const Join> joins) n
   return lagging != shared.lagging.end() ? lagging->subscribers : shared.waiting;
 }
 
-/// A number below `count` that is another one in every update, and evenly spread over some.
+/// A number below `count` that differs from update to update, spread evenly.
 std::size_t spread(std::uint64_t update, std::size_t count) noexcept {
   constexpr std::uint64_t kGolden = 0x9E3779B97F4A7C15;
   return count == 0 ? 0 : (update * kGolden >> 32) % count;
@@ -55,7 +54,8 @@ std::size_t spread(std::uint64_t update, std::size_t count) noexcept {
 
 }  // namespace
 
-/// Every region that a client subscribes to: visit(volume, bundle, region, place, joins, shared).
+/// Calls visit(volume, bundle, region, place, joins, shared) for each region that a client
+/// subscribes to.
 template <typename Visit>
 void Distributor::State::for_each_join(ServedClient& client, const Visit& visit) noexcept {
   std::size_t place = 0;
@@ -71,7 +71,7 @@ void Distributor::State::for_each_join(ServedClient& client, const Visit& visit)
   }
 }
 
-/// Before an update: who takes part in it, and what they hold.
+/// Before an update: counts the subscribers of each state, and those whose turn it is.
 void Distributor::State::gather_subscribers() noexcept {
   for (const auto& entry : clients) {
     ServedClient& client = *entry.second;
@@ -94,8 +94,8 @@ void Distributor::State::gather_subscribers() noexcept {
   }
 }
 
-/// Which snapshots and catch-ups there is time for: the oldest first, of regions in an order that
-/// is another one in every update.
+/// Chooses the snapshots and catch-ups within the block limit: oldest states first, regions in an
+/// order that differs from update to update.
 void Distributor::State::allot_extras() noexcept {
   std::size_t regions = 0;
   for_each_region([&](auto&&...) { ++regions; });
@@ -136,8 +136,8 @@ std::uint32_t Distributor::pending_shared(ClientId client) const noexcept {
   return blocks;
 }
 
-/// True if, of all that the blocks of a region depend on, the client holds what was current since
-/// it does not hold what is current of that region.
+/// True if the client holds all that the blocks of a region depend on, in versions that were
+/// current at some time since its state of that region is outdated.
 bool Distributor::State::holds_dependencies(ServedClient& client, const ServedVolume& volume,
                                             const Bundle& bundle, const SharedRegion& dependent,
                                             std::span<const Join> joins) const noexcept {
@@ -160,7 +160,8 @@ bool Distributor::State::holds_dependencies(ServedClient& client, const ServedVo
   return true;
 }
 
-/// After all regions are made: one thread. Who cannot be handed what was made holds what he held.
+/// Gives a client the packets of its regions. One thread, after all regions are made. A client that
+/// gets no packets holds what it held.
 Status Distributor::State::hand_out_regions(ServedClient& client) noexcept {
   client.held_back = client.rate.slowed();
   if (client.suspended) return Status::ok;
@@ -178,7 +179,7 @@ Status Distributor::State::hand_out_regions(ServedClient& client) noexcept {
   if (room != Status::ok) return room;
   const double most =
       client.budget.bytes == 0 ? 1e18 : kBurst * static_cast<double>(client.budget.bytes);
-  // Where there is no room for all, others come first in every update.
+  // If not all packets fit, each update begins with another region.
   const std::size_t start = client.rate.slowed() ? spread(updates, places) : 0;
   std::size_t turns = 0, bytes = 0, blocks = 0;
   for (const bool wrapped : {false, true}) {
@@ -224,8 +225,8 @@ Status Distributor::State::hand_out_regions(ServedClient& client) noexcept {
   return Status::ok;
 }
 
-/// After an update: states that nobody holds any more, and more than are kept; packets; who took
-/// part.
+/// After an update: drops states that no client holds, states beyond kMaxLagging, all packets, and
+/// the counts of subscribers.
 void Distributor::State::forget_subscribers() noexcept {
   const auto fewer = [](const Lagging& a, const Lagging& b) {
     return a.subscribers.all < b.subscribers.all;
@@ -234,7 +235,7 @@ void Distributor::State::forget_subscribers() noexcept {
   for_each_region([&](const ServedVolume&, const Bundle&, SharedRegion& shared) {
     auto& lagging = shared.lagging;
     lagging.erase(std::remove_if(lagging.begin(), lagging.end(), nobody), lagging.end());
-    // The oldest of those that fewest hold: they get snapshots.
+    // Drops the oldest of the states with fewest clients, which then get snapshots.
     if (lagging.size() > kMaxLagging) {
       lagging.erase(std::min_element(lagging.begin(), lagging.end(), fewer));
     }

@@ -1,5 +1,5 @@
-// What a Distributor is made of. distributor.cpp answers its calls; distributor_unicast.cpp and
-// distributor_shared.cpp hand out the packets of the two kinds of delivery.
+// The state of a Distributor. distributor.cpp has its calls; distributor_unicast.cpp and
+// distributor_shared.cpp make the packets of unicast and shared delivery.
 #pragma once
 
 #include "session/server/distributor.h"
@@ -21,7 +21,7 @@ struct StreamWorker {
   PacketWriter writer = {};
 };
 
-/// Where a texture is served.
+/// Where a texture is: its bundle, and its place there.
 struct TexturePlace {
   Bundle* bundle = nullptr;
   std::size_t bundle_id = 0;  ///< in the volume
@@ -43,23 +43,23 @@ struct UnicastBundle {
   [[nodiscard]] std::uint32_t until(std::uint32_t block, std::uint64_t update) const noexcept;
 };
 
-/// A client's part in a region, and what it holds of one texture.
+/// A client's subscription to a region, and what it holds of one texture of it.
 struct Join {
   bool subscribed = false;
   std::uint32_t sequence = 0, checksum = 0;
   std::uint32_t since = 0;  ///< the first update after it subscribed
 };
 
-/// What was pending longest for a client when all its blocks were looked at last. While enough of
-/// it is left, nothing else can be pending longer.
+/// The blocks that were pending longest for a client when all its blocks were last examined. While
+/// enough of these are left, no other block can be pending longer.
 struct Backlog {
-  std::uint64_t update = 0;  ///< when that was
-  BlockMask due;             ///< bundles that were, by place in ServedClient::unicast
+  std::uint64_t update = 0;  ///< when all blocks were examined
+  BlockMask due;             ///< bundles that were due, by place in ServedClient::unicast
   struct Place {
     std::uint32_t bundle, block;
   };
   std::vector<Place> oldest;  ///< in order of bundle and block
-  std::size_t others = 0;     ///< blocks that were pending besides these
+  std::size_t others = 0;     ///< further pending blocks
 };
 
 struct ServedClient {
@@ -68,25 +68,25 @@ struct ServedClient {
   Budget budget;
   bool suspended = false;
   std::vector<Masks> visible;  ///< by volume
-  /// Unicast: the same with what visible blocks depend on, if anything; null: not known yet.
+  /// Unicast: visible blocks and what these depend on; null: not known yet.
   std::vector<std::shared_ptr<const Masks>> interest;
   std::vector<UnicastBundle> unicast;  ///< Delivery::unicast: by volume and bundle
   Backlog backlog;                     ///< unicast
   /// Shared: by volume and bundle; per region and texture.
   std::vector<std::vector<std::vector<Join>>> joins;
-  float bytes_per_block = 0;   ///< unicast: of late; 0 before the first packet
+  float bytes_per_block = 0;   ///< unicast: recent mean; 0 before the first packet
   SharedRate rate;             ///< shared
   std::uint64_t written = 0;   ///< unicast: blocks in the packets of the last update
-  std::uint64_t examined = 0;  ///< unicast: blocks, to choose these
-  bool held_back = false;      ///< for want of bytes something is missing
-  bool has_pending = true;     ///< unicast: anything, when it was looked at last
+  std::uint64_t examined = 0;  ///< unicast: blocks examined to choose these
+  bool held_back = false;      ///< see Distributor::held_back()
+  bool has_pending = true;     ///< unicast: see Distributor::has_pending()
   std::vector<OutgoingPacket> out;
   ClientState totals;
 
   [[nodiscard]] bool knows_interest(const UnicastBundle& of) const noexcept {
     return !of.volume->linked || interest[of.volume->id()] != nullptr;
   }
-  /// Precondition: knows_wanted(of).
+  /// Precondition: knows_interest(of).
   [[nodiscard]] const BlockMask& interest_in(const UnicastBundle& of) const noexcept {
     const std::uint16_t id = of.volume->id();
     return (of.volume->linked ? *interest[id] : visible[id])[of.bundle->group_id];
@@ -111,25 +111,25 @@ struct Planned {
   return n > SIZE_MAX / k ? SIZE_MAX : n * k;
 }
 
-/// What a client wants of all due bundles and does not hold as it is.
+/// The pending blocks of a client in all due bundles.
 struct Pending {
   std::vector<Candidate> candidates;  ///< in order of bundle and block
-  std::size_t blocks = 0;             ///< of all of it, whether it is among these or not
+  std::size_t blocks = 0;             ///< all pending blocks, candidates or not
 };
-/// With the `most` candidates that are pending longest at least, and all where more than age
-/// counts. All blocks are looked at only where the backlog does not have as many.
+/// Returns at least the `most` candidates that are pending longest, and all candidates if not only
+/// age counts. Examines all blocks only if the backlog has too few.
 [[nodiscard]] Pending collect(ServedClient& client, std::uint64_t update, std::size_t most);
-/// Whether a client that wants these blocks of a bundle lacks one of them as it is.
+/// True if the client with this interest in a bundle does not hold the block's current contents.
 [[nodiscard]] bool is_pending(const UnicastBundle& unicast, const BlockMask& interest,
                               std::uint32_t block) noexcept;
-/// By rank where the kind has one, else by the share of the block that changed.
+/// Sets the weights: the rank where the kind has one, else the share of the block that changed.
 void weigh(const ServedClient& client, std::span<Candidate> candidates);
-/// What a candidate depends on and the client has not held since the candidate is pending.
+/// Blocks that a candidate depends on and the client has not held since the candidate is pending.
 [[nodiscard]] std::vector<Candidate> missing_dependencies(ServedClient& client,
                                                           const Candidate& dependent,
                                                           std::uint64_t update);
 
-/// What one publish() looks at, kept for its capacity.
+/// The blocks that one publish() reads; an object is reused for its capacity.
 struct Reading {
   Status choose(const BlockMask& unread, std::span<const std::uint32_t> listed);
 
@@ -200,7 +200,7 @@ struct Distributor::State {
   DistributorOptions options;
   const Backend* backend = nullptr;
   Reading reading;
-  bool is_stateful = false;  ///< as its encoders say
+  bool is_stateful = false;  ///< of the backend's encoders
   std::vector<std::unique_ptr<ServedVolume>> volumes;
   std::map<ClientId, std::unique_ptr<ServedClient>> clients;
   ClientId next_client = 1;

@@ -1,5 +1,5 @@
-// Packets made for one client: the blocks it sees that changed since they were sent to it, as many
-// as its budget allows (Stengel et al. §3.4).
+// Packets for one client: visible blocks that changed since they were sent to it, as many as its
+// budget allows (Stengel et al. §3.4).
 #include "base/guard.h"
 #include "session/server/distributor_state.h"
 
@@ -10,9 +10,9 @@ namespace {
 
 /// Packets are written again, of fewer blocks, until they fit the budget.
 constexpr int kAttempts = 8;
-/// How much a block changed is looked at for so many times those that can be sent.
+/// Candidates that are weighed, per block that can be sent.
 constexpr std::size_t kWeighed = 4;
-/// First guess of what a block costs: a third of its records.
+/// Assumed compression ratio before the first packet.
 constexpr float kGuessedRatio = 3;
 
 std::vector<Planned> plan(const ServedClient& client, std::span<const Candidate> chosen) {
@@ -22,7 +22,7 @@ std::vector<Planned> plan(const ServedClient& client, std::span<const Candidate>
       planned.push_back({candidate.bundle});
     planned.back().blocks.push_back(candidate.block);
   }
-  // A receiver whose state is unknown needs its keyframe even if nothing is in it.
+  // A client whose state is unknown needs a keyframe, even an empty one.
   for (std::uint32_t i = 0; i < client.unicast.size(); ++i) {
     const UnicastBundle& unicast = client.unicast[i];
     const auto unknown = [](const UpdateStream& stream) {
@@ -38,7 +38,7 @@ std::vector<Planned> plan(const ServedClient& client, std::span<const Candidate>
   return planned;
 }
 
-/// How many blocks are tried first, if there are as many.
+/// The number of blocks to try first.
 std::size_t first_guess(const ServedClient& client) {
   std::size_t limit = client.budget.blocks == 0 ? SIZE_MAX : client.budget.blocks;
   if (client.budget.bytes == 0 || client.unicast.empty()) return limit;
@@ -73,7 +73,7 @@ Status Distributor::State::write_unicast(ServedClient& client, unsigned thread,
     UnicastBundle& unicast = client.unicast[p.bundle];
     client.written += p.blocks.size() * unicast.streams.size();
     p.written.resize(unicast.streams.size());
-    // Where one texture begins anew, all do: its blocks and theirs are one.
+    // If one texture of a bundle needs a keyframe, all get one: they share their blocks.
     const bool anew = std::any_of(unicast.streams.begin(), unicast.streams.end(),
                                   [](const UpdateStream& one) { return one.keyframe_next(); });
     const auto from = anew ? UpdateStream::From::keyframe : UpdateStream::From::sent;
@@ -89,8 +89,7 @@ Status Distributor::State::write_unicast(ServedClient& client, unsigned thread,
   return Status::ok;
 }
 
-/// Writes packets of as many of the pending blocks as the budget has room for, and
-/// says of how many.
+/// Writes packets of as many pending blocks as the budget has room for. `sent`: their number.
 Status Distributor::State::write_within_budget(ServedClient& client, unsigned thread,
                                                std::vector<Planned>& planned, std::size_t& sent) {
   std::size_t limit = first_guess(client);
@@ -114,7 +113,7 @@ Status Distributor::State::write_within_budget(ServedClient& client, unsigned th
     if (status != Status::ok) return status;
     const std::size_t bytes = bytes_of(planned), blocks = blocks_of(candidates);
     const bool fits = client.budget.bytes == 0 || bytes <= client.budget.bytes;
-    // What a backend remembers cannot be taken back.
+    // A stateful backend cannot write the packets again.
     if (fits || candidates.size() <= 1 || is_stateful) {
       client.has_pending = all_pending > 0;
       client.held_back = blocks < all_pending && limit != client.budget.blocks;
@@ -127,7 +126,7 @@ Status Distributor::State::write_within_budget(ServedClient& client, unsigned th
   }
 }
 
-/// All of an update's packets or none.
+/// Makes all of an update's packets or none.
 Status Distributor::State::update_unicast(ServedClient& client, unsigned thread) {
   std::vector<Planned> planned;
   std::vector<std::shared_ptr<Packet>> packets;
@@ -146,7 +145,7 @@ Status Distributor::State::update_unicast(ServedClient& client, unsigned thread)
     return Status::ok;
   });
   if (status != Status::ok) {
-    // Encoders that remember have seen what is not going to be sent.
+    // Stateful encoders have seen blocks that will not be sent.
     for (UnicastBundle& unicast : client.unicast) {
       if (unicast.encoders.empty()) continue;
       for (UpdateStream& stream : unicast.streams) stream.request_keyframe();

@@ -1,5 +1,4 @@
-// The volumes of a server: what is streamed of them, where they stand, and which of their blocks
-// are active.
+// The volumes of a Distributor: their textures and options, geometry, and active blocks.
 #include <gicodec/error_bound.h>
 
 #include "base/guard.h"
@@ -11,8 +10,8 @@
 
 namespace gicodec {
 
-/// True if all textures of a group that travels together, and of groups that depend on one another,
-/// are sent in the same updates.
+/// True if all textures of a bundled group, and of groups that depend on one another, are sent in
+/// the same updates.
 static bool in_step(const ServedVolume& volume, const Bundle& bundle,
                     std::uint32_t interval) noexcept {
   const auto same = [&](const auto& texture) { return texture->options.interval == interval; };
@@ -30,7 +29,7 @@ Status Distributor::State::add_texture(ServedVolume& volume, std::uint8_t group_
                                        const StreamedTexture& streamed) {
   auto encoder = backend->make_encoder(texture.desc, options.settings);
   if (!encoder) return encoder.status();
-  // What clients hold is known only if they hold what was published.
+  // With a lossy backend the server would not know what clients hold.
   if ((*encoder)->lossy()) return Status::unsupported_backend;
   if ((*encoder)->is_stateful() && any_shared()) return Status::unsupported_backend;
   is_stateful = (*encoder)->is_stateful();
@@ -43,7 +42,7 @@ Status Distributor::State::add_texture(ServedVolume& volume, std::uint8_t group_
   }
   Bundle& bundle = *volume.bundles.back();
   StreamedTexture settings = streamed;
-  // What says which records of others exist is exact.
+  // A texture that holds the presence of others is exact.
   const bool exact = texture.threshold == Threshold::exact || (first && group.presence == 0);
   if (exact && valid_error(settings.max_error)) settings.max_error = 0;
   bundle.textures.push_back(std::make_unique<ServedTexture>(texture, settings, volume.textures++,
@@ -148,7 +147,7 @@ Result<std::uint16_t> Distributor::add_volume(const VolumeDesc& desc,
 Status Distributor::remove_volume(std::uint16_t volume, std::uint32_t generation) {
   ServedVolume* const found = state_->find_volume(volume);
   if (found == nullptr) return Status::unknown_volume;
-  // What holds its contents goes before them.
+  // Clients' streams refer to its contents, so they go first.
   for (const auto& entry : state_->clients) State::drop_volume_of(*entry.second, *found);
   *found = ServedVolume();
   found->since = generation;

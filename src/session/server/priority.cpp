@@ -11,18 +11,18 @@ namespace {
 
 auto place(const Candidate& c) { return std::tuple(c.bundle, c.block); }
 
-// Ties are broken by what the candidate is, so that the choice depends on nothing else.
+// Bundle and block break ties, so that the choice is deterministic.
 bool older(const Candidate& a, const Candidate& b) {
   const auto tie = [](const Candidate& c) { return std::tuple(c.order, c.bundle, c.block); };
   return a.age != b.age ? a.age > b.age : tie(a) < tie(b);
 }
 
-/// What was chosen so far.
+/// The candidates chosen so far.
 struct Choice {
   explicit Choice(const Missing& missing_in) : missing(missing_in) {}
 
-  /// Takes what a candidate lacks and then itself, or as many of these as have room among `most`
-  /// blocks; false if not all have.
+  /// Takes the blocks that a candidate lacks, then the candidate, up to `most` blocks; false if not
+  /// all have room.
   bool take(const Candidate& candidate, std::size_t most) {
     if (missing) {
       if (taken.contains(place(candidate))) return true;
@@ -95,7 +95,7 @@ void choose(std::vector<Candidate>& candidates, std::size_t limit, const Missing
     const auto take = [&](std::size_t most, const auto& before) {
       const std::size_t full = std::max<std::size_t>(most, 1);
       while (end != candidates.end() && choice.blocks < full) {
-        // Each is a block at least: of the others none comes before these, and no more have room.
+        // Each candidate is at least one block, so no more than `left` of the others have room.
         const auto left = static_cast<std::size_t>(candidates.end() - end);
         const auto last = end + static_cast<std::ptrdiff_t>(std::min(full - choice.blocks, left));
         std::nth_element(end, last, candidates.end(), before);

@@ -5,11 +5,11 @@
 namespace gicodec {
 namespace {
 
-/// A link of 1 Mbps carries the update of so many probes' records in about a tenth of a second.
+/// A link of 1 Mbps carries an update of so many bytes of probe records in about 0.1 s.
 constexpr std::size_t kRegionBytes = 192 << 10;
 constexpr std::size_t kMaxSlots = 4096;
 
-/// Of whatever travels in one packet, at its largest.
+/// Bytes of the largest block of a packet, those of a bundled group's textures together.
 std::size_t bytes_of_a_block(const VolumeDesc& volume) noexcept {
   std::size_t most = 1;
   for (const TextureGroup& group : volume.groups) {

@@ -1,5 +1,5 @@
-// What a server has of a volume: what clients are told of it, its textures and what was published
-// of them, the streams of its regions.
+// Served volume: a volume as the server holds it, with its description for clients, the published
+// contents of its textures, and the streams of its regions.
 #pragma once
 
 #include <gicodec/protocol.h>
@@ -22,36 +22,36 @@ struct SharedPacket {
   std::uint32_t blocks = 0;
 };
 
-/// Clients of a region that hold the same of it.
+/// Clients of a region that hold the same state of it.
 struct Subscribers {
   std::uint32_t all = 0;
-  std::uint32_t served = 0;           ///< those of them whose turn this update is
-  bool extra = false;                 ///< packets are made only for them, and there is time for it
+  std::uint32_t served = 0;           ///< those whose turn this update is
+  bool extra = false;                 ///< the update has time for packets for these only
   std::vector<SharedPacket> packets;  ///< that take them to the streams' state
 };
 
-/// What some clients of a region hold, who missed what came after: one state per texture.
+/// An earlier state of a region that some clients hold: one state per texture.
 struct Lagging {
   std::vector<StreamState> states;
-  std::uint32_t until = 0;  ///< as SharedRegion::until() was
+  std::uint32_t until = 0;  ///< SharedRegion::until() of that state
   Subscribers subscribers;
 };
 
-/// A region of a bundle: the streams, one per texture, that all subscribers share. Those who take
-/// fewer updates than others hold an earlier state of them and are sent what they lack.
+/// A region of a bundle: the streams, one per texture, that all subscribers share. Clients that get
+/// fewer updates hold an earlier state of the streams and get catch-ups.
 struct SharedRegion {
   std::vector<UpdateStream> streams;
   std::size_t bytes = 0;         ///< of its blocks in all textures
   std::vector<Lagging> lagging;  ///< in the order of their sequences
   std::uint64_t written = 0;     ///< blocks in the packets of the last update
-  std::uint64_t extra = 0;       ///< of these, in packets that were made for few
-  Subscribers up_to_date;        ///< who hold the streams' state
-  Subscribers waiting;           ///< who hold nothing that is known
+  std::uint64_t extra = 0;       ///< of these, in packets for few clients
+  Subscribers up_to_date;        ///< hold the streams' state
+  Subscribers waiting;           ///< hold no known state
   // Where blocks depend on others:
-  std::uint32_t changed = 0;          ///< update that is the first with other contents; 0: none yet
-  bool dependencies_changed = false;  ///< `dependencies` is not what is current alone
+  std::uint32_t changed = 0;          ///< first update with other contents; 0: none yet
+  bool dependencies_changed = false;  ///< `dependencies` has more than the current ones
   std::vector<std::uint32_t>
-      dependencies;  ///< regions with what the streams' blocks depend on, ascending
+      dependencies;  ///< regions that the streams' blocks depend on, ascending
 
   /// The last update with the contents that the streams hold.
   [[nodiscard]] std::uint32_t until(std::uint64_t update) const noexcept {
@@ -68,12 +68,12 @@ struct ServedTexture {
         rule(texture.threshold),
         unread(block_count(texture.desc), 1) {}
 
-  /// True if the block entered by scrolling and was not read since: what is current belongs to
-  /// where it stood before.
+  /// True if the block entered by scrolling and was not read since: its contents belong to its
+  /// former place.
   [[nodiscard]] bool waits(std::uint32_t block) const noexcept {
     return published && unread[block] != 0;
   }
-  /// True if what a receiver of `stream` holds of a block is to be replaced.
+  /// True if a client of `stream` does not hold the block's current contents.
   [[nodiscard]] bool outdated(const UpdateStream& stream, std::uint32_t block) const noexcept;
 
   StreamedTexture options;
@@ -81,11 +81,11 @@ struct ServedTexture {
   BlockHistory history;
   Threshold rule;
   bool published = false;
-  bool presence_changed = false;  ///< since then
-  /// Blocks that the next publish() reads, listed or not: never read, scrolled in, or of another
-  /// presence.
+  bool presence_changed = false;  ///< since it was published
+  /// Blocks that the next publish() reads, listed or not: those never read, scrolled in, or with
+  /// another presence.
   BlockMask unread;
-  /// Where blocks depend on others: by number, the last update with contents that are not current.
+  /// Where blocks depend on others: by version, the last update in which it was current.
   std::vector<std::uint32_t> until;
 };
 
@@ -106,30 +106,30 @@ struct Bundle {
   std::uint8_t group_id;
   std::vector<std::unique_ptr<ServedTexture>> textures;
   const BlockHistory* first =
-      nullptr;  ///< of the group's first texture: dependencies and ranks are by it
+      nullptr;  ///< of the group's first texture, which determines dependencies and ranks
   RegionGrid cut;
   std::vector<std::uint32_t> order;  ///< by block, see block_order()
   std::vector<std::vector<std::uint32_t>> region_blocks;
   std::vector<SharedRegion> regions;
-  bool due = false;            ///< takes part in this update, as does what it depends on
-  bool is_dependency = false;  ///< blocks of another group depend on its own
+  bool due = false;            ///< takes part in this update, as do bundles it depends on
+  bool is_dependency = false;  ///< blocks of another group depend on its blocks
 
   [[nodiscard]] const TextureDesc& desc() const noexcept { return textures[0]->history.desc(); }
-  /// Counts the updates in which it may be due.
+  /// The number of the update among those in which it may be due.
   [[nodiscard]] std::uint64_t turn(std::uint64_t update) const noexcept {
     return update / textures[0]->options.interval;
   }
   [[nodiscard]] bool outdated(std::span<const UpdateStream> streams,
                               std::uint32_t block) const noexcept;
-  /// True if the blocks of `other`, which comes before it, are what this bundle's depend on.
+  /// True if this bundle's blocks depend on those of `other`, which comes before it.
   [[nodiscard]] bool depends_on(const Bundle& other) const noexcept {
     return group->depends_on == other.group_id;
   }
-  /// Where blocks depend on others: receivers may lack some of what they held.
+  /// Where blocks depend on others: clients may no longer hold all that they held.
   void forget_held() noexcept;
 };
 
-/// What the blocks of a group depend on, out of its current contents.
+/// The blocks that the blocks of a group depend on, read from its current contents.
 class Dependencies {
  public:
   void resize(std::uint32_t blocks) {
@@ -138,25 +138,25 @@ class Dependencies {
   }
   void set_stale(std::uint32_t block) noexcept { stale_[block] = 1; }
   [[nodiscard]] bool stale() const noexcept;
-  /// Asks stale blocks. `limit`: how many blocks the group has on which they depend.
+  /// Reads the stale blocks. `limit`: number of blocks of the group that they depend on.
   void refresh(const TextureGroup& group, const BlockHistory& first, std::uint32_t limit);
   [[nodiscard]] std::span<const std::uint32_t> operator[](std::uint32_t block) const noexcept {
     return std::span(blocks_).subspan(begin_[block], begin_[block + 1] - begin_[block]);
   }
-  /// The regions, as that group is cut, of what some blocks depend on: ascending.
+  /// The regions, as `cut` divides that group, that some blocks depend on: ascending.
   [[nodiscard]] std::vector<std::uint32_t> regions(std::span<const std::uint32_t> blocks,
                                                    const RegionGrid& cut) const;
   [[nodiscard]] std::size_t memory() const noexcept;  ///< bytes
 
  private:
-  std::vector<std::size_t> begin_;  ///< where each block's begin, and their end
+  std::vector<std::size_t> begin_;  ///< in blocks_: where each block's list begins, and the end
   std::vector<std::uint32_t> blocks_;
   BlockMask stale_;
 };
 
-/// A volume of the one table that a server has of them, or the place of one that was removed.
+/// An entry of the server's table of volumes; a removed volume keeps its entry.
 struct ServedVolume {
-  /// As clients are told: its number, where it stands now, what its regions are cut by.
+  /// The description for clients, with number, present geometry and region size.
   DescribedVolume described;
   std::uint32_t since = 0;        ///< generation in which it was added or removed
   VolumeDesc desc;                ///< without groups if it was removed
@@ -164,7 +164,7 @@ struct ServedVolume {
   std::vector<std::unique_ptr<Bundle>> bundles;
   std::uint8_t textures = 0;
   bool linked = false;                     ///< some blocks depend on others
-  std::vector<Dependencies> dependencies;  ///< then, by group
+  std::vector<Dependencies> dependencies;  ///< if linked: by group
 
   [[nodiscard]] std::uint16_t id() const noexcept { return described.id; }
   [[nodiscard]] bool removed() const noexcept { return desc.groups.empty(); }

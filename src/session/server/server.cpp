@@ -12,7 +12,7 @@
 namespace gicodec {
 namespace {
 
-/// Updates of a texture that can be taken back, at least.
+/// Updates of a texture that can be reverted, at least.
 constexpr std::uint32_t kUnacknowledged = 32;
 
 }  // namespace
@@ -50,7 +50,7 @@ void Server::State::end(Session& session) noexcept {
 void Server::State::drop(Connection& connection, Reason reason) noexcept {
   if (connection.dropped) return;
   connection.dropped = true;
-  // Nothing of what was made for it needs to go before the reason; without memory, nothing goes.
+  // The client needs only the reason; without memory it gets nothing.
   connection.messages.clear();
   connection.told = 0;
   connection.in_flight.clear();
@@ -127,7 +127,7 @@ Result<ConnectionId> Server::connect(double now, std::string_view origin) {
   });
 }
 
-/// Who says nothing gives way to those who may say something.
+/// Drops the oldest connection without a Hello if there are too many of them.
 void Server::State::make_room_to_wait() noexcept {
   Connection* oldest = nullptr;
   std::uint32_t waiting = 0;

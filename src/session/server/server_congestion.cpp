@@ -1,5 +1,5 @@
-// How much each client gets in an update: what its congestion control, its rate, its budget and the
-// server's time allow.
+// How much each client gets in an update: congestion control, rate, budget and the server's time
+// limit it.
 #include "session/server/server_state.h"
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 namespace gicodec {
 namespace {
 
-/// More than numbers hold is as good as no limit.
+/// Rounds down; values beyond kMax become kMax, which is no limit in practice.
 std::uint64_t whole_bytes(double bytes) noexcept {
   constexpr double kMax = 1e18;
   return static_cast<std::uint64_t>(std::min(bytes, kMax));
@@ -30,7 +30,7 @@ void Server::report_update_time(double elapsed, double budget) noexcept {
   if (!std::isfinite(elapsed) || !std::isfinite(budget) || budget <= 0) return;
   state_->limit_unicast_blocks(next_unicast_block_limit(
       state_->unicast_block_limit, state_->distributor.written(), std::max(elapsed, 0.0), budget));
-  // The time that making took is none that they waited on their way.
+  // The time of making an update does not count as its delay.
   for (const auto& [id, connection] : state_->connections) {
     if (connection->in_flight.empty() || connection->in_flight.back().made != state_->updated)
       continue;
@@ -38,15 +38,15 @@ void Server::report_update_time(double elapsed, double budget) noexcept {
   }
 }
 
-/// Even shares for those with something pending who could have taken it. Where these are too small
-/// for a block, they take turns; where one takes longer than an update may, updates do.
+/// Gives even shares to ready clients with pending blocks. If a share is less than a block, clients
+/// take turns; if the limit is less than a block, some updates have no turn.
 void Server::State::share_unicast_blocks() noexcept {
   const auto takes = [this](const auto& entry) {
     const Session* const session = entry.second->session;
     return entry.second->ready && session != nullptr && session->delivery == Delivery::unicast &&
            distributor.has_pending(session->client);
   };
-  double block = 1;  // with those of other textures that come with it
+  double block = 1;  // counts once per texture of its group
   for (const auto& volume : distributor.table()) {
     for (const TextureGroup& group : volume->desc.groups) {
       block = std::max(block, static_cast<double>(group.textures.size()));
@@ -62,7 +62,7 @@ void Server::State::share_unicast_blocks() noexcept {
     if (connection->session == nullptr) continue;
     Session& session = *connection->session;
     session.unicast_limited = unicast_block_limit > 0 && session.delivery == Delivery::unicast;
-    // Where nothing was pending, it has to be looked at what is now.
+    // Without pending blocks a client needs room for one, so that new ones are found.
     const double least = distributor.has_pending(session.client) ? 0 : block;
     session.unicast_blocks = static_cast<std::uint32_t>(std::max(all ? share : 0, least));
   }
@@ -77,8 +77,8 @@ void Server::State::share_unicast_blocks() noexcept {
   }
 }
 
-/// Gives a client what its budget, its congestion control, its share and the rate have left; false
-/// if that is nothing. What a message took beyond the rate is paid back by the next ones.
+/// Sets a client's budget to the least of its own, `bytes`, its share and the rates. False if a
+/// rate leaves nothing; updates pay for what earlier ones took beyond it.
 bool Server::State::keep_to_rate(Connection& connection, std::uint64_t bytes, double now) noexcept {
   Session& session = *connection.session;
   Budget budget = session.budget;
@@ -104,15 +104,15 @@ bool Server::State::keep_to_rate(Connection& connection, std::uint64_t bytes, do
   return true;
 }
 
-/// When the oldest update on its way was made that is not empty.
+/// When the oldest update in flight that is not empty was made.
 std::optional<double> Server::State::oldest_filled(const Connection& connection) noexcept {
   const auto filled = [](const InFlight& update) { return !update.sent.empty; };
   const auto it = std::find_if(connection.in_flight.begin(), connection.in_flight.end(), filled);
   return it == connection.in_flight.end() ? std::nullopt : std::optional(it->sent.made);
 }
 
-/// Skips a client that has used up its rate, and one that lags: that gets empty updates,
-/// by which it learns the time, and whether it has lost one.
+/// Skips a client that has used up its rate, or lags. A lagging client gets empty updates, which
+/// tell it the time, and whether it has missed an update.
 void Server::State::look_after(Connection& connection, double now) noexcept {
   ConnectionStatistics& s = connection.statistics;
   if (connection.in_flight.empty()) connection.progress = now;
@@ -125,11 +125,11 @@ void Server::State::look_after(Connection& connection, double now) noexcept {
   using Turn = Connection::Turn;
   connection.ready = may && !s.lagging && *bytes > 0;
   connection.turn = connection.ready && !waits ? Turn::full : Turn::empty;
-  // Of what is on its way nothing is acknowledged any more but by an update of the new sync point.
+  // Only an update of the new sync point lets the client acknowledge those of earlier ones.
   const bool agreed =
       connection.in_flight.empty() || connection.in_flight.back().sync == connection.sync;
   if ((full || !may) && agreed) connection.turn = Turn::none;
-  // Where all that was on its way is lost, nothing but another update tells the client so.
+  // If all updates in flight are lost, only another update tells the client so.
   constexpr double kReminder = 1;  // seconds
   if (full && agreed &&
       now - std::max(connection.in_flight.back().made, connection.reminded) >= kReminder) {
@@ -139,7 +139,7 @@ void Server::State::look_after(Connection& connection, double now) noexcept {
   if (connection.turn != Turn::full) ++s.skipped;
 }
 
-/// How far updates are apart, and what clients are allowed on average.
+/// Measures the interval between updates, and the mean budget of congestion control.
 void Server::State::look_at_clock(double now) noexcept {
   constexpr double kWeight = 1.0 / 8, kLongest = 4, kShortest = 0.01;
   const double passed = updated >= 0 ? std::max(now - updated, 0.0) : 1;

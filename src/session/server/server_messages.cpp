@@ -1,4 +1,4 @@
-// What clients say, and what comes of it. Every message is hostile until it was checked.
+// Answers to the messages of clients. Every message is hostile until it is checked.
 #include "base/guard.h"
 #include "base/secret.h"
 #include "session/server/server_state.h"
@@ -8,7 +8,7 @@
 namespace gicodec {
 namespace {
 
-/// Kept for take_latencies(); further ones are not.
+/// Latencies kept for take_latencies().
 constexpr std::size_t kMaxLatencies = 4096;
 
 bool same_text(const std::string& a, const std::string& b) noexcept {
@@ -70,7 +70,7 @@ void Server::State::answer(Connection& connection, const Hello& hello, double no
   session->ticket = *ticket;
   session->budget = hello.budget;
   if (Connection* const before = find(session->connection); before != nullptr) {
-    before->session = nullptr;  // The session is not to end with it.
+    before->session = nullptr;  // Dropping it must not end the session.
     drop(*before, Reason::replaced);
   }
   session->connection = connection.id;
@@ -94,7 +94,7 @@ Status draw(const ServerOptions& options, std::span<std::byte> bytes) {
   return options.access.random ? options.access.random(bytes) : system_random(bytes);
 }
 
-/// Never one that somebody holds: a source that repeats itself is broken.
+/// backend_failed if the ticket is in use or zero: the source of randomness is broken.
 Result<Ticket> Server::State::draw_ticket() const {
   Ticket ticket{};
   const Status status = draw(options, ticket);
@@ -105,7 +105,7 @@ Result<Ticket> Server::State::draw_ticket() const {
   return ticket;
 }
 
-/// Looks at all of them, so that the time it takes tells nothing about tickets.
+/// Compares all sessions, so that the time it takes does not depend on the tickets.
 Session* Server::State::session_of(const Ticket& ticket) {
   Session* found = nullptr;
   for (const auto& [client, session] : sessions) {
@@ -114,9 +114,9 @@ Session* Server::State::session_of(const Ticket& ticket) {
   return found;
 }
 
-/// A new session, or none: the client is dropped then.
+/// A new session. Null if there is none: the connection is then dropped.
 Session* Server::State::session_for(Connection& connection, const Hello& hello, double now) {
-  // Its place in the table first, which is what may fail.
+  // Allocates the entry first, which may fail.
   std::map<ClientId, std::unique_ptr<Session>> place;
   place.emplace(0, std::make_unique<Session>());
   const bool unicast = hello.delivery == Delivery::unicast;
@@ -162,9 +162,8 @@ bool Server::State::too_many_of(std::size_t origin) const noexcept {
          static_cast<std::size_t>(same) >= options.limits.max_unicast_per_origin;
 }
 
-/// Forgets a session that waits for its client to come back: of the origin that has most of them,
-/// the one that has waited longest. For a place among unicast packets, one that has such a place,
-/// and of this origin if it has too many.
+/// Ends a session without a connection: of the origin that has most of these, the oldest. If
+/// `delivery` is unicast, only a unicast session, and one of `origin` if that has too many.
 void Server::State::make_room(Delivery delivery, std::size_t origin) {
   const bool of_origin = delivery == Delivery::unicast && too_many_of(origin);
   const auto fits = [&](const Session& session) {
@@ -190,8 +189,8 @@ void Server::State::make_room(Delivery delivery, std::size_t origin) {
   end(*chosen);
 }
 
-/// Opens a sync point: what the client holds is what it says, and nothing else. False if it was
-/// dropped.
+/// Opens a sync point: the client holds the listed states and nothing else. False if the connection
+/// was dropped.
 bool Server::State::take_held(Connection& connection, std::uint32_t sync,
                               std::uint32_t of_generation, std::span<const HeldState> held) {
   Session& session = *connection.session;
@@ -200,7 +199,7 @@ bool Server::State::take_held(Connection& connection, std::uint32_t sync,
   std::set<StreamId> listed;
   const auto volumes = distributor.table();
   for (const HeldState& state : held) {
-    // Of a volume that has gone since nothing is held.
+    // Skips a volume that has gone since.
     const std::uint16_t volume = state.stream.volume;
     if (volume < volumes.size() && volumes[volume]->since > of_generation) continue;
     const bool twice = !listed.insert(state.stream).second;
@@ -234,8 +233,8 @@ void Server::State::answer(Connection& connection, const Acknowledge& acknowledg
   if (acknowledge.number > connection.number) return drop(connection, Reason::malformed);
   if (connection.welcomed)
     connection.congestion.answered(now - *std::exchange(connection.welcomed, {}), now);
-  // Messages come in order: with an update, all of earlier sync points have arrived. Until then
-  // they are on their way, whatever the client has asked for meanwhile.
+  // Messages arrive in order: an acknowledged update means that those of earlier sync points have
+  // arrived too. Until then they count as in flight.
   const auto arrived = [&](const InFlight& update) {
     return update.sync < acknowledge.sync || update.number <= acknowledge.number;
   };
@@ -251,7 +250,7 @@ void Server::State::answer(Connection& connection, const Acknowledge& acknowledg
       connection.latencies.push_back(static_cast<float>(now - done.made));
     }
     connection.statistics.in_flight_bytes -= done.sent.bytes;
-    // What was lost tells nothing of the way.
+    // Updates of an earlier sync point say nothing about the path.
     if (agreed) connection.congestion.acknowledged(done.sent, now, interval, mean_bytes);
     connection.progress = now;
     connection.in_flight.pop_front();
@@ -266,7 +265,7 @@ void Server::State::answer(Connection& connection, const Viewpoint& viewpoint, d
 void Server::State::answer(Connection& connection, const Subscribe& subscribe, double now) {
   const auto volumes = distributor.table();
   if (subscribe.volume >= volumes.size()) return drop(connection, Reason::unknown_volume);
-  // One that has gone since.
+  // Ignores a volume that has gone since.
   const ServedVolume& volume = *volumes[subscribe.volume];
   if (volume.since > subscribe.generation) return;
   if (!connection.messages_left.take(now, options.limits.messages_per_second, message_burst,

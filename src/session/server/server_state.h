@@ -1,5 +1,5 @@
-// What a Server is made of. server.cpp looks after connections and updates, server_messages.cpp
-// answers what clients say.
+// The state of a Server. server.cpp has the connections, server_updates.cpp the updates,
+// server_messages.cpp the answers to clients.
 #pragma once
 
 #include <gicodec/server.h>
@@ -19,7 +19,7 @@
 
 namespace gicodec {
 
-/// A client of the server. Outlives its connection for a while.
+/// A client of the server. Outlives its connection by ServerTimeouts::linger.
 struct Session {
   Ticket ticket = {};
   ClientId client = 0;
@@ -28,14 +28,14 @@ struct Session {
   std::size_t origin = 0;            ///< hash; 0: not known
   ConnectionId connection = 0;       ///< 0 while there is no connection
   double lost = 0;                   ///< when the connection was lost
-  double credit = 0, credit_at = 0;  ///< bytes of updates that it may be sent
-  bool unicast_limited = false;      ///< blocks of unicast packets, in the next update
-  std::uint32_t unicast_blocks = 0;  ///< to so many
+  double credit = 0, credit_at = 0;  ///< bytes of updates that its rate leaves it, and when
+  bool unicast_limited = false;      ///< unicast_blocks limits the next update
+  std::uint32_t unicast_blocks = 0;
   std::optional<Viewpoint> viewpoint;
-  std::set<StreamId> streams;  ///< that it was ever sent
+  std::set<StreamId> streams;  ///< all streams that it was ever sent
 };
 
-/// An update that a client did not acknowledge yet.
+/// An update that a client has not acknowledged.
 struct InFlight {
   std::uint32_t sync = 0, number = 0;
   double made = 0;
@@ -43,7 +43,7 @@ struct InFlight {
   std::vector<std::pair<StreamId, std::uint32_t>> packets;  ///< and their sequences
 };
 
-/// What may happen at a rate on average, and as a burst.
+/// Limits a rate on average, and its bursts.
 struct Allowance {
   double left = 0, at = 0;
 
@@ -63,20 +63,20 @@ struct Connection {
   std::size_t origin = 0;      ///< hash; 0: not known
   Session* session = nullptr;  ///< from its Hello on
   bool dropped = false;
-  /// In this update; a reminder is empty and does not count as on its way.
+  /// What it gets in this update; a reminder is empty and does not count as in flight.
   enum class Turn : std::uint8_t { none, reminder, empty, full } turn = Turn::full;
-  double reminded = 0;                  ///< when the last reminder was made
-  std::optional<ServerEvent> farewell;  ///< of a dropped client, until it was told
-  double connected = 0, progress = 0;   ///< progress: when it last acknowledged, or had nothing to
+  double reminded = 0;                    ///< when the last reminder was made
+  std::optional<ServerEvent> farewell;    ///< event of a dropped client, until take_events()
+  double connected = 0, progress = 0;     ///< progress: last acknowledgement, or nothing in flight
   Allowance messages_left, resyncs_left;  ///< that it may send
   std::uint32_t sync = 0, number = 0;     ///< of the last update made for it
   std::deque<InFlight> in_flight;
   std::optional<double> welcomed;  ///< when its Welcome was made, until that is acknowledged
   CongestionControl congestion;
-  bool congestion_limited = false;  ///< nothing but its congestion control limits its bytes
-  bool ready = true;  ///< nothing but its turn kept it from blocks, as of the last update
+  bool congestion_limited = false;  ///< congestion control is what limits its bytes
+  bool ready = true;  ///< in the last update it could have had blocks, but for its turn
   std::vector<OutgoingMessage> messages;
-  std::size_t told = 0;  ///< how many there were with the last list of volumes
+  std::size_t told = 0;  ///< number of messages when the last list of volumes was added
   std::vector<float> latencies;
   ConnectionStatistics statistics;
 };
@@ -85,7 +85,7 @@ inline constexpr double kResyncBurst = 10;  ///< seconds' worth
 /// Blocks of a volume that make a Subscribe count for one message more.
 inline constexpr double kBlocksOfAMessage = 16384;
 
-/// What a Subscribe to a volume costs besides itself, in messages.
+/// Messages that a Subscribe to a volume counts as, beyond the first.
 [[nodiscard]] double subscribe_cost(const ServedVolume& volume) noexcept;
 
 /// Unpredictable bytes.
@@ -100,7 +100,7 @@ struct Server::State {
         message_burst(options_in.limits.messages_per_second) {}
 
   [[nodiscard]] Connection* find(ConnectionId connection);
-  /// Unless it does not exist, was dropped, or has no session.
+  /// Null if it does not exist, was dropped, or has no session.
   [[nodiscard]] const Connection* find_session(ConnectionId connection) const noexcept;
   void event(ServerEvent::Type kind, const Connection& connection);
   Status send(Connection& connection, const AnyMessage& message);
@@ -143,21 +143,21 @@ struct Server::State {
   ServerOptions options;
   Distributor distributor;       ///< with the table of volumes
   std::uint32_t generation = 0;  ///< of the list of volumes: one more with each change
-  /// That a client may send at once: a second's worth, and to subscribe to everything.
+  /// Messages that a client may send at once: a second's worth, and a Subscribe to every group.
   double message_burst;
-  std::uint32_t largest_group = 0;  ///< blocks, of those that were removed too
+  std::uint32_t largest_group = 0;  ///< blocks; removed volumes count too
   std::map<ConnectionId, std::unique_ptr<Connection>> connections;
   std::map<ClientId, std::unique_ptr<Session>> sessions;
   std::vector<ServerEvent> events;
   ConnectionId next_connection = 1;
   double updated = -1;             ///< when the last update was made; negative: never
-  double interval = 0;             ///< seconds between updates, of late
+  double interval = 0;             ///< seconds between updates, recent mean
   double takers = 0;               ///< clients with sessions
-  double total_credit = 0;         ///< bytes that all may be sent
-  double mean_bytes = 0;           ///< of what congestion controls allow
+  double total_credit = 0;         ///< bytes that all clients together may be sent
+  double mean_bytes = 0;           ///< mean of CongestionControl::bytes()
   double unicast_block_limit = 0;  ///< 0: no limit
-  double unicast_blocks = 0;       ///< of these, left for unicast packets; below 0: to be saved
-  ConnectionId last_turn = 0;      ///< who had the last of few
+  double unicast_blocks = 0;       ///< left for unicast packets; below 0: overspent
+  ConnectionId last_turn = 0;      ///< that had the last turn, see share_unicast_blocks()
 };
 
 }  // namespace gicodec

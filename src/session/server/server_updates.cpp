@@ -1,4 +1,4 @@
-// Updates: what is made for all sessions, and the messages that carry it.
+// Updates: packets for all sessions, and the messages that carry them.
 #include "base/guard.h"
 #include "bitstream/update_message.h"
 #include "session/server/server_state.h"
@@ -10,10 +10,10 @@
 
 namespace gicodec {
 
-/// What several clients get of one update, written once for all who get the same packets.
+/// The second piece of update messages, written once for all clients with the same packets.
 class SharedUpdates {
  public:
-  /// `message` is of these packets.
+  /// `message` has these packets.
   Status write_rest(const UpdateMessage& message, std::span<const OutgoingPacket> packets,
                     std::shared_ptr<const Message>& out);
 
@@ -36,7 +36,7 @@ Status SharedUpdates::write_rest(const UpdateMessage& message,
   const auto same = [](const OutgoingPacket& a, const OutgoingPacket& b) {
     return a.packet == b.packet && a.stream == b.stream && a.tier == b.tier;
   };
-  // Proofs are of what one client holds.
+  // Messages with proofs are not shared: proofs depend on what the client holds.
   const auto found = by_packets_.find(hash);
   if (found != by_packets_.end() && message.proofs.empty() &&
       std::equal(packets.begin(), packets.end(), found->second.packets.begin(),
@@ -69,8 +69,8 @@ Status Server::update(double now, double time) {
     const Status status =
         guarded([&, to = connection.get()] { return state_->send_update(*to, shared, now, time); });
     if (status != Status::ok) {
-      state_->drop(*connection, Reason::exhausted);  // Its streams went on without it.
-      shared = {};                                   // Its packets are gone.
+      state_->drop(*connection, Reason::exhausted);  // It has missed packets of its streams.
+      shared = {};                                   // May refer to its packets.
     }
     if (first == Status::ok) first = status;
   }

@@ -1,4 +1,4 @@
-// The volumes of a Server: what is said of them, and how clients hear of those that come and go.
+// The volumes of a Server: their descriptions, and the messages when they come and go.
 #include <gicodec/error_bound.h>
 
 #include "base/guard.h"
@@ -11,7 +11,7 @@
 namespace gicodec {
 namespace {
 
-/// What clients are told of a texture: how far off it was before, and what is lost on the way.
+/// The error of a texture at clients: that of the published records and of streaming together.
 float told_error(const TextureGroup& group, std::size_t place, const StreamedTexture& streamed) {
   const NamedTexture& texture = group.textures[place];
   const bool exact = texture.threshold == Threshold::exact || place == group.presence;
@@ -28,7 +28,7 @@ double subscribe_cost(const ServedVolume& volume) noexcept {
   return blocks / kBlocksOfAMessage;
 }
 
-/// What a Subscribe to every group of a volume counts for.
+/// Messages that a Subscribe to every group of a volume counts as.
 static double burst_of(const ServedVolume& volume) noexcept {
   return (1 + subscribe_cost(volume)) * static_cast<double>(volume.desc.groups.size());
 }
@@ -86,7 +86,7 @@ Status Server::remove_volume(std::uint16_t volume) {
   if (removed != Status::ok) return removed;
   ++state.generation;
   state.message_burst -= burst;
-  // Its streams are no longer anybody's.
+  // Removes its streams from all sessions.
   for (const auto& [client, session] : state.sessions) {
     std::erase_if(session->streams, [&](const StreamId& id) { return id.volume == volume; });
   }
@@ -108,7 +108,7 @@ std::vector<DescribedVolume> Server::State::described_now() const {
   return list;
 }
 
-/// Who cannot be told is gone: the next update would mean nothing to him.
+/// Drops clients that cannot get the list: they could not apply the next update.
 void Server::State::tell_volumes() noexcept {
   for (const auto& [id, connection] : connections) {
     if (connection->session != nullptr) send_volumes(*connection);
@@ -117,7 +117,7 @@ void Server::State::tell_volumes() noexcept {
 
 void Server::State::send_volumes(Connection& connection) noexcept {
   const Status sent = guarded([&]() -> Status {
-    // Of lists that follow one another the last says it all.
+    // Of consecutive lists only the last is needed.
     const bool repeated = connection.told > 0 && connection.told == connection.messages.size();
     const Status status = send(connection, Volumes{generation, described_now()});
     if (status != Status::ok) return status;

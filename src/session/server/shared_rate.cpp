@@ -6,15 +6,15 @@
 namespace gicodec {
 namespace {
 
-/// First guess of a packet: a third of its texels.
+/// Assumed compression ratio before the first packet.
 constexpr float kGuessedRatio = 3;
 
 // Consecutive places and groups are far apart in every period of 2, 4, ... 32 updates.
 constexpr std::uint64_t kPlaces = 13, kGroups = 9;
-/// With many streams there are some in every update; with few, clients take turns in groups.
+/// With many streams every update has some; with few, groups of clients take turns.
 constexpr std::size_t kMaxTurns = 4, kManyStreams = 64;
 
-/// Spreads any run of numbers evenly over 0..1.
+/// Maps any run of numbers evenly to 0..1.
 float spread(std::size_t place) noexcept {
   constexpr std::uint32_t kGolden = 0x9E3779B1;
   return static_cast<float>(static_cast<std::uint32_t>(place) * kGolden >> 8) / (1U << 24);
@@ -37,7 +37,7 @@ void SharedRate::choose(const Budget& budget, std::size_t streams,
   limit(budget.blocks, blocks_);
   share_ = std::max(share_, std::ldexp(1.0F, -static_cast<int>(kSlowest)));
   tier_ = std::min(kSlowest, static_cast<unsigned>(-std::floor(std::log2(share_))));
-  // So many take part twice as often that the share comes out.
+  // This share of the streams takes part twice as often, so that the average is share_.
   faster_ = tier_ == 0 ? 1 : std::ldexp(share_, static_cast<int>(tier_)) - 1;
 }
 

@@ -1,4 +1,4 @@
-// In which order vertices of irradiance vectors come to a client (Pacanowski et al. §4.1).
+// The order in which a client gets vertices of irradiance vectors (Pacanowski et al. §4.1).
 #pragma once
 
 #include <gicodec/texture.h>
@@ -8,8 +8,8 @@
 
 namespace gicodec {
 
-/// By vertex its place: the corners of the grid first, then one vertex at random of each slice
-/// along the longest axis, and again. Depends on nothing but the grid. Throws std::bad_alloc.
+/// The place of each vertex: the corners of the grid first, then rounds of one random vertex per
+/// slice of the longest axis. Depends only on the grid. Throws std::bad_alloc.
 [[nodiscard]] std::vector<std::uint32_t> stratified_order(const Grid& grid);
 
 }  // namespace gicodec
