@@ -1,4 +1,4 @@
-// What a kind can be told on the command line: --set NAME=VALUE.
+// Settings of a kind on the command line: --set NAME=VALUE.
 #pragma once
 
 #include "ddgi/gather.h"
@@ -14,7 +14,7 @@ namespace gicodec::kinds {
 
 struct Setting {
   std::string_view name;
-  std::string_view usual;    ///< its value unless it is set
+  std::string_view usual;    ///< its default value
   std::string_view summary;  ///< with the range and the unit
 };
 
@@ -22,8 +22,8 @@ struct Setting {
 class Settings {
  public:
   Settings() = default;
-  /// `given`: texts NAME=VALUE, the last one of a name counts. Throws tools::Error of Exit::usage
-  /// for a name that the kind does not have. `flag`: what stands before a name, for messages.
+  /// `given`: NAME=VALUE each; the last of a name counts. `flag`: the text before a name in
+  /// messages. Throws tools::Error of Exit::usage for a name that the kind does not have.
   Settings(std::string_view kind, std::span<const Setting> known,
            std::span<const std::string> given, std::string flag = "--set ");
 
@@ -42,20 +42,20 @@ class Settings {
   std::string flag_;
 };
 
-// Of kinds that gather light along rays.
+// Settings of kinds that gather light along rays.
 [[nodiscard]] constexpr Setting rays_turned(std::string_view usual) {
   return {"rays-turned", usual, "1: each point has them turned otherwise, 0: all have the same"};
 }
 inline constexpr Setting kRaysAnew{"rays-anew", "0", "1: other rays with every update"};
 inline constexpr Setting kWarmup{"warmup", "3", "bounces before the first update, 0 to 100"};
-/// By these, and "rays" in that range. Throws tools::Error of Exit::usage.
+/// The options of these settings, and "rays" in that range. Throws tools::Error of Exit::usage.
 [[nodiscard]] ddgi::GatherOptions gather_options(const Settings& settings, std::uint32_t least,
                                                  std::uint32_t most, std::uint32_t seed);
 
 /// "1,2.5,-3" with exactly `count` numbers up to a million, or none.
 [[nodiscard]] std::vector<float> numbers_from_string(std::string_view text, std::size_t count);
 
-/// A line for each, for --help.
+/// A line for each setting, for --help.
 [[nodiscard]] std::string help_of(std::span<const Setting> known);
 
 }  // namespace gicodec::kinds

@@ -1,4 +1,4 @@
-// What is streamed and written to containers: volumes, frame after frame, traced or played.
+// Source: volumes, frame after frame, traced or played, to stream or to write to containers.
 #pragma once
 
 #include "dump/dump.h"
@@ -23,14 +23,13 @@ struct SourceVolume {
   std::string name;
   VolumeGeometry geometry;
   VolumeDesc desc;
-  std::vector<float> errors = {};  ///< by texture, StreamedTexture::source_error; or none at all
-  /// By texture, the quantiser of HEVC that codes it in containers, negative: it stays lossless; or
-  /// none at all.
+  std::vector<float> errors = {};  ///< by texture, StreamedTexture::source_error; or empty
+  /// By texture, the quantiser of HEVC that codes it in containers, negative: lossless; or empty.
   std::vector<int> quantisers = {};
-  /// By texture, what dumps of it say besides scene and time; or none at all.
+  /// By texture, the attributes of dumps besides scene and time; or empty.
   std::vector<tools::DumpInfo> files = {};
 
-  /// Of all groups.
+  /// The textures of all groups.
   [[nodiscard]] std::vector<NamedTexture> textures() const {
     std::vector<NamedTexture> all;
     for (const TextureGroup& group : desc.groups) {
@@ -47,7 +46,7 @@ struct SourceVolume {
 struct SourceRequest {
   double time = 0;                      ///< of the scene, seconds
   std::vector<Viewpoint> viewers = {};  ///< camera-locked volumes follow the first
-  bool all = false;                     ///< somebody wants everything, wherever viewers look
+  bool all = false;                     ///< a client wants everything, whatever the viewers
 };
 
 struct SourceFrame {
@@ -56,22 +55,22 @@ struct SourceFrame {
     BlockMask active;                              ///< of the first group; empty: all are
     std::vector<std::vector<std::byte>> textures;  ///< tightly packed
   };
-  double time = 0;     ///< that it shows
-  double seconds = 0;  ///< that it took
+  double time = 0;     ///< of the scene, seconds
+  double seconds = 0;  ///< of work
   std::vector<Volume> volumes;
   std::vector<std::string> remarks = {};  ///< for the operator
-  std::uint64_t rays = 0;                 ///< that it took, if they were counted
+  std::uint64_t rays = 0;                 ///< traced for it, if counted
 };
 
 struct Source {
   std::vector<SourceVolume> volumes;
-  SceneId scene;                                          ///< where it was traced, if known
-  bool played = false;                                    ///< frames have an order of their own
+  SceneId scene;                                          ///< that was traced, if known
+  bool played = false;                                    ///< frames have a fixed order
   std::function<SourceFrame(const SourceRequest&)> next;  ///< throws tools::Error
-  std::vector<std::string> remarks = {};                  ///< for the operator, when it begins
+  std::vector<std::string> remarks = {};                  ///< for the operator at the start
 };
 
-/// A source of one volume, which `trace` fills in: its textures, and remarks.
+/// A source of one volume. `trace` fills in the textures and remarks of each frame.
 [[nodiscard]] inline Source live_source(
     std::string name, VolumeDesc desc,
     std::function<void(const SourceRequest&, SourceFrame&)> trace) {

@@ -1,4 +1,4 @@
-// A kind of payload that the programs trace and draw.
+// A kind of light that the programs trace and draw.
 #pragma once
 
 #include "settings.h"
@@ -19,12 +19,12 @@ namespace gicodec::kinds {
 struct TraceRequest {
   ddgi::Scene scene;
   Settings settings;
-  std::uint32_t seed = 1;                ///< of all that is random
-  unsigned threads = 0;                  ///< as for ddgi::ThreadPool
-  std::function<bool()> cancelled = {};  ///< likewise
+  std::uint32_t seed = 1;                ///< of all random numbers
+  unsigned threads = 0;                  ///< see ddgi::ThreadPool
+  std::function<bool()> cancelled = {};  ///< see ddgi::ThreadPool
 };
 
-/// A scene and what traces it: what a source keeps from frame to frame.
+/// A scene and its tracer, which a source keeps from frame to frame.
 template <typename Server>
 struct Tracer {
   ddgi::Scene scene;
@@ -39,22 +39,22 @@ struct Tracer {
 struct TracedKind {
   std::string_view name;              ///< that of the library's Kind
   std::string_view summary;           ///< one line
-  std::span<const Setting> settings;  ///< of what is traced
-  std::span<const Setting> drawing;   ///< of how a client draws with it
-  /// Traces live. Throws tools::Error. Its frames are the same for the same request and times,
-  /// whatever the number of threads.
+  std::span<const Setting> settings;  ///< of tracing
+  std::span<const Setting> drawing;   ///< of drawing
+  /// A source that traces live. Frames depend only on request and times, not on the number of
+  /// threads. Throws tools::Error.
   Source (*trace)(TraceRequest request);
-  /// Light of such a volume in a scene, which must outlive it. Throws tools::Error of
-  /// Exit::bad_input where they do not belong together.
+  /// Light of such a volume in a scene, which must outlive the light. Throws tools::Error of
+  /// Exit::bad_input if they do not belong together.
   std::unique_ptr<VolumeLight> (*light)(const ddgi::RayScene& scene, const VolumeDesc& desc,
                                         const Settings& drawing);
-  /// Bytes that it takes besides the textures that it is shown, at most, by what these take.
+  /// Largest memory of the light in bytes. `textures`: bytes of the textures, which do not count.
   std::uint64_t (*light_memory)(const VolumeDesc& desc, std::uint64_t textures);
-  /// Its blocks stand in the world, so that viewers need some of them only.
+  /// Blocks stand in the world, so that viewers need only some of them.
   bool culled = false;
-  /// Its settings are flags of their own: --NAME VALUE rather than --set NAME=VALUE.
+  /// Settings are flags of their own: --NAME VALUE instead of --set NAME=VALUE.
   bool flags = false;
-  /// What its light shows depends on the updates before the last, too.
+  /// The light depends on earlier updates, not only on the last.
   bool remembers = false;
 };
 

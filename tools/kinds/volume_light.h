@@ -1,4 +1,4 @@
-// Light of one volume as a client holds it: drawn with, and told what came.
+// Light of one volume that a client holds: updated from its textures, used for drawing.
 #pragma once
 
 #include "ddgi/client_light.h"
@@ -13,14 +13,14 @@
 
 namespace gicodec::kinds {
 
-/// A texture as a client holds it, in its own layout, tightly packed.
+/// A texture that a client holds, in its own layout, tightly packed.
 struct HeldTexture {
   std::string_view name;
   TextureDesc desc;
   std::span<const std::byte> texels;
-  /// Per block whether anything was received for it; empty: all was.
+  /// One byte per block, not 0 if it was received; empty: all blocks were.
   std::span<const std::uint8_t> received;
-  std::string_view encoding = {};  ///< that its dumps tell of colour (kEncodingAttribute)
+  std::string_view encoding = {};  ///< of colour, from its dumps (kEncodingAttribute)
 
   [[nodiscard]] bool has(std::size_t block) const {
     return received.empty() || received[block] != 0;
@@ -30,8 +30,8 @@ struct HeldTexture {
 struct HeldVolume {
   const VolumeDesc& desc;
   const VolumeGeometry& geometry;
-  std::span<const HeldTexture> textures;  ///< of all sets, in order
-  const HeldVolume* finer = nullptr;      ///< another of its kind, where that reaches
+  std::span<const HeldTexture> textures;  ///< of all groups, in order
+  const HeldVolume* finer = nullptr;      ///< a finer volume of the same kind, preferred inside it
 };
 
 /// Throws tools::Error of Exit::bad_input unless the textures are those of this description.
@@ -39,9 +39,8 @@ void check_held(const HeldVolume& volume, const VolumeDesc& expected);
 
 class VolumeLight : public ddgi::ClientLight {
  public:
-  /// Takes what is held after an update that shows the scene at `time`. The volume has the
-  /// description that the light was made for; what is in it may be anything. Throws tools::Error
-  /// of Exit::bad_input.
+  /// Takes the volume after an update that shows the scene at `time`. It has the description that
+  /// the light was made for; its contents may be anything. Throws tools::Error of Exit::bad_input.
   virtual void update(const HeldVolume& volume, double time) = 0;
 };
 

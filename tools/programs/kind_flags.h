@@ -1,4 +1,4 @@
-// Which kind of payload is traced, and how: shared by gi-trace and gi-server.
+// Flags of gi-trace and gi-server that choose what kind of light is traced, and how.
 #pragma once
 
 #include "kind_table.h"
@@ -16,30 +16,29 @@ namespace gicodec::kinds {
 struct KindFlags {
   std::string kind = "probes";
   std::vector<std::string> set;  ///< NAME=VALUE
-  /// What the flags were given of kinds that have some of their own, by setting.
+  /// Values of the flags that kinds have for their own settings, by setting.
   std::map<std::string_view, std::vector<std::string>> own;
 };
 
-/// --kind and --set, with the names of all kinds, and the flags of kinds that have some.
+/// Adds --kind, --set, and the kinds' own flags.
 void add_kind_flags(tools::Command& app, KindFlags& flags);
 /// The kinds without flags of their own and their settings, for the end of --help.
 [[nodiscard]] std::string settings_help();
 /// --set of a client that draws, and its settings for the end of --help.
 void add_drawing_flag(tools::Command& app, DrawingFlags& flags);
 [[nodiscard]] std::string drawing_help();
-/// Throws tools::Error of Exit::usage where another kind is traced and a flag of a kind, or one of
-/// these, which are for probes, was given.
+/// Throws tools::Error of Exit::usage if another kind than probes is traced and a kind's own flag,
+/// or one of `of_probes`, was given.
 void refuse_flags_of_probes(const tools::Command& app, const KindFlags& flags,
                             std::span<const char* const> of_probes);
-/// Likewise where viewers are sent all of what is traced, and one of these, which are for what is
-/// culled, was given.
+/// Throws tools::Error of Exit::usage if the kind is not culled and one of `of_culled` was given.
 void refuse_flags_of_culled(const tools::Command& app, const KindFlags& flags,
                             std::span<const char* const> of_culled);
 [[nodiscard]] const TracedKind& traced_kind(const KindFlags& flags);
 /// Throws tools::Error of Exit::usage for settings that the kind does not have, or has as flags.
 [[nodiscard]] Settings settings_of(const TracedKind& kind, const KindFlags& flags);
-/// Traces that kind in the scene of this name, of which the source tells. Throws tools::Error. Ends
-/// by ddgi::Cancelled when the program is interrupted.
+/// A source that traces the kind in a scene named `label`. Throws tools::Error, and ddgi::Cancelled
+/// when the program is interrupted.
 [[nodiscard]] Source trace_kind(const KindFlags& flags, ddgi::Scene scene, const std::string& label,
                                 std::uint32_t seed, unsigned threads);
 

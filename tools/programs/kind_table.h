@@ -12,22 +12,22 @@
 
 namespace gicodec::kinds {
 
-/// How light is drawn with: what --max-memory and --set say.
+/// How a client draws: --max-memory and --set.
 struct DrawingFlags {
-  std::uint64_t memory = 4096;     ///< MiB that it may take, with its textures
+  std::uint64_t memory = 4096;     ///< MiB that light may take, with its textures
   std::vector<std::string> set{};  ///< NAME=VALUE
 };
-/// Throws tools::Error of Exit::bad_input where it would take more, of Exit::usage for settings
-/// that the kind does not have.
+/// Throws tools::Error of Exit::bad_input if the light would take more memory, of Exit::usage for
+/// settings that the kind does not have.
 [[nodiscard]] std::unique_ptr<VolumeLight> make_light(const TracedKind& kind,
                                                       const ddgi::RayScene& scene,
                                                       const VolumeDesc& desc,
                                                       const DrawingFlags& flags);
 
 [[nodiscard]] std::span<const TracedKind> traced_kinds();
-/// Whether viewers need only some of its blocks.
+/// True if viewers need only some of the volume's blocks.
 [[nodiscard]] bool is_culled(const SourceVolume& volume);
-/// nullptr for a name that is none of these.
+/// nullptr for an unknown name.
 [[nodiscard]] const TracedKind* find_traced_kind(std::string_view name);
 
 }  // namespace gicodec::kinds

@@ -93,7 +93,7 @@ class Client {
   Client(const Options& options, Scene scene)
       : options_(options), scene_(std::move(scene)), pool_(options.threads), rays_(scene_) {}
 
-  /// At the time that `shown` tells, if it is not nullptr.
+  /// Places the scene at the time of `shown`, unless that is nullptr.
   void place(const StoredVolume* shown) {
     const Options& o = options_;
     const auto told = shown == nullptr ? std::nullopt : shown->facts_at(o.frame).time;
@@ -118,7 +118,7 @@ class Client {
     if (o.exposure) camera_.exposure = *o.exposure;
   }
 
-  /// Lit by `shown`; by direct light only where that is nullptr.
+  /// Draws with the light of `shown`; nullptr: with direct light only.
   [[nodiscard]] Picture draw(StoredVolume* shown, const RenderOptions& render_options) {
     std::unique_ptr<VolumeLight> light;
     if (shown != nullptr && render_options.mode != RenderMode::direct) {
@@ -134,7 +134,7 @@ class Client {
 
   [[nodiscard]] float exposure() const { return camera_.exposure; }
 
-  /// Says why a picture is black, if it is, and what helps.
+  /// If a picture is black, prints the cause and a remedy.
   void explain(const std::string& path, const Picture& picture) const {
     const auto seen = [&](Vec3 p) {
       return std::max({p.x, p.y, p.z}) * camera_.exposure > 7e-4F;  // code 1 on the screen
@@ -161,7 +161,7 @@ class Client {
   }
 
  private:
-  /// Where probes stand, by flags, files or the scene; they have to be in it.
+  /// Places probes by flags, files or the scene. They must be in the scene.
   void place_probes(StoredVolume& shown) const {
     const Grid grid = shown.desc().groups.front().textures.front().desc.grid;
     SceneFlags flags = options_.scene;
@@ -228,7 +228,7 @@ void check_usage(const Options& o) {
   if (!o.output.empty()) check_picture_name(o.output);
 }
 
-/// The scene of the flags, else the one that `shown` tells, which is not to be another.
+/// The scene of the flags, else that of `shown`. Fails if these differ.
 Scene find_scene(const SceneFlags& flags, const StoredVolume* shown, const FrameFacts& facts) {
   SceneFlags used = flags;
   const bool told = !flags.scene.empty() || !flags.gltf.empty();
@@ -258,7 +258,7 @@ Scene find_scene(const SceneFlags& flags, const StoredVolume* shown, const Frame
   return scene;
 }
 
-/// Refuses a picture that would destroy something, before any work is done.
+/// Checks before any work that the picture would overwrite nothing that must stay.
 void check_picture(const Options& o) {
   if (o.output.empty()) return;
   tools::InputFiles inputs({o.stream});

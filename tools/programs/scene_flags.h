@@ -1,4 +1,4 @@
-// Which scene and which volume the command line means.
+// Flags that choose the scene and the volume.
 #pragma once
 
 #include "common/command_line.h"
@@ -12,8 +12,8 @@ namespace gicodec::kinds {
 
 struct SceneFlags {
   std::string scene;     ///< name of a built-in scene
-  std::string gltf;      ///< or a glTF 2.0 file
-  bool outside = false;  ///< which may name files outside of its folder
+  std::string gltf;      ///< a glTF 2.0 file instead
+  bool outside = false;  ///< the glTF file may refer to files outside of its folder
   std::string grid;      ///< "16x8x16"; empty for the scene's own
   std::string bounds;    ///< "x0,y0,z0,x1,y1,z1" from the first to the last probe; or empty
 };
@@ -21,11 +21,11 @@ struct SceneFlags {
 void add_scene_flags(tools::Command& app, SceneFlags& flags);
 /// Throws tools::Error for an unknown scene or a file that cannot be used.
 [[nodiscard]] ddgi::Scene load_scene(const SceneFlags& flags);
-/// "villa" or "room.glb", for messages, as an attribute and in JSON: utf8_text().
+/// "villa" or "room.glb", for messages, attributes and JSON; UTF-8.
 [[nodiscard]] std::string scene_label(const SceneFlags& flags);
-/// Grid and box of the flags become the scene's own. Throws tools::Error of Exit::usage.
+/// Sets the scene's grid and box by the flags. Throws tools::Error of Exit::usage.
 void place_volume(const SceneFlags& flags, ddgi::Scene& scene);
-/// Grid and place by the flags, else by the scene.
+/// Grid and place of the flags, else of the scene.
 [[nodiscard]] ddgi::VolumeShape volume_of(const SceneFlags& flags, const ddgi::Scene& scene);
 /// "1,2.5,-3" with exactly `count` finite numbers. Throws tools::Error of Exit::usage.
 [[nodiscard]] std::vector<float> numbers(const std::string& text, std::size_t count,

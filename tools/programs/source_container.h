@@ -20,19 +20,19 @@ using tools::times_of;
 
 class SourceContainer {
  public:
-  /// Throws tools::Error, here and below.
+  /// All calls throw tools::Error.
   SourceContainer(const std::string& path, const Source& source, const FrameTimes& times,
                   const std::string& backend);
   void add(std::uint64_t frame, const SourceFrame& contents);
   void finish();
-  /// Instead of finish(): the name under which what was written stays; empty if there is none.
+  /// Instead of finish(): keeps what was written; returns the file's name, empty if there is none.
   [[nodiscard]] std::string leave() noexcept { return output_.leave(); }
 
   struct Sum {
     std::string texture;
-    std::uint64_t bytes = 0;  ///< of packets
+    std::uint64_t bytes = 0;  ///< size of all packets
   };
-  /// So far, by texture.
+  /// The sums so far, by texture.
   [[nodiscard]] const std::vector<Sum>& sums() const { return sums_; }
 
  private:

@@ -24,7 +24,7 @@ const TracedKind* traced(const VolumeEntry& entry) {
   return kind == nullptr ? nullptr : find_traced_kind(kind->name);
 }
 
-/// Why a volume is not drawn.
+/// The reason why a volume cannot be drawn.
 std::string why_not(const ContainerDescription& description, std::size_t volume) {
   const std::string unknown = tools::unknown_kind(description, volume);
   if (!unknown.empty()) return unknown;
@@ -146,7 +146,7 @@ void StoredVolume::show(std::uint64_t frame, VolumeLight& light) {
   if (cut_ || input_->arrived().size() < texels_.size()) tools::require_whole(*input_);
 }
 
-/// Takes over what the next frame changed.
+/// Reads the blocks that the next frame changed.
 void StoredVolume::follow() {
   for (std::size_t i = 0; i < texels_.size(); ++i) {
     if (texels_[i].empty()) {

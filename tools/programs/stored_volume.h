@@ -13,38 +13,38 @@
 
 namespace gicodec::kinds {
 
-/// What files say of a frame, as far as they do.
+/// Facts about a frame from files; each may be missing.
 struct FrameFacts {
   std::optional<std::string> scene;
   std::optional<double> time;
   std::optional<Position> origin, spacing;
 
-  /// Takes what the attributes of a dump say.
+  /// Reads the facts in the attributes of a dump.
   void read(const tools::Attributes& attributes);
 };
 
 class StoredVolume {
  public:
-  /// The first volume of a traced kind in a container; "-" is standard input. Throws tools::Error,
-  /// here and below.
+  /// Opens the first volume of a traced kind in a container; "-" is standard input. All calls throw
+  /// tools::Error.
   StoredVolume(const std::string& path, bool allow_incomplete, const tools::DecoderFlags& decoding);
-  /// Irradiance and visibility of one frame of probes, from the dumps of a folder.
+  /// Opens the dumps of a folder: irradiance and visibility of one frame of probes.
   StoredVolume(const std::string& folder, std::uint64_t frame);
 
   [[nodiscard]] const std::string& source() const noexcept { return source_; }  ///< for messages
   [[nodiscard]] const TracedKind& kind() const noexcept { return *kind_; }
   [[nodiscard]] const VolumeDesc& desc() const noexcept { return desc_; }
-  /// A hash of the scene's triangles; 0 if it is not told.
+  /// A hash of the scene's triangles; 0 if unknown.
   [[nodiscard]] std::uint64_t triangles() const;
-  /// What an incomplete container lacks; empty if it is whole. Of a pipe after show().
+  /// What an incomplete container lacks; empty if it is complete. For a pipe, call it after show().
   [[nodiscard]] const std::string& missing() const noexcept { return missing_; }
-  /// Which texture lost bits to coding; empty if none did.
+  /// The textures that were coded with loss; empty if none was.
   [[nodiscard]] std::string loss() const;
   [[nodiscard]] FrameFacts facts_at(std::uint64_t frame) const;
-  /// Instead of where it says that it stands.
+  /// Overrides the stored geometry.
   void place(const VolumeGeometry& geometry) { geometry_ = geometry; }
-  /// Tells a light this frame; every frame up to it where the kind remembers them. Throws
-  /// tools::Error of Exit::bad_input where there is no such frame, or maybe not all of it.
+  /// Updates a light to this frame, through all earlier frames if the kind `remembers`. Throws
+  /// tools::Error of Exit::bad_input if the frame does not exist or may be incomplete.
   void show(std::uint64_t frame, VolumeLight& light);
 
  private:
@@ -54,12 +54,12 @@ class StoredVolume {
   std::string source_, missing_;
   std::optional<tools::ContainerInput> input_;
   bool allow_incomplete_ = false;
-  std::vector<tools::DumpInfo> files_;  ///< heads of dumps
+  std::vector<tools::DumpInfo> files_;  ///< headers of dumps
   const TracedKind* kind_ = nullptr;
   VolumeDesc desc_;
   std::optional<VolumeGeometry> geometry_;
-  std::size_t first_ = 0;  ///< of its textures in the container
-  bool cut_ = false;       ///< into regions, any of which may be missing
+  std::size_t first_ = 0;  ///< first of its textures in the container
+  bool cut_ = false;       ///< the volume is cut into regions, which may be missing
   std::vector<std::vector<std::byte>> texels_;
 };
 

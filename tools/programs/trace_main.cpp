@@ -68,7 +68,7 @@ Exit list_scenes() {
   return Exit::ok;
 }
 
-/// The scene as it is, or with the coordinates of its irradiance map as TEXCOORD_1.
+/// Writes the scene as glTF, for irradiance maps with their coordinates as TEXCOORD_1.
 void export_scene(const Options& o, const Scene& scene, const tools::InputFiles& inputs) {
   const TracedKind& kind = traced_kind(o.kind);
   const bool map = kind.name == "irradiance_maps";
@@ -108,7 +108,7 @@ class Progress {
   void clear() {
     if (std::exchange(shown_, false) && done_ > 0) tools::print(stderr, "\r\033[K");
   }
-  /// ", 2.30 Mrays/s", where rays are told.
+  /// ", 2.30 Mrays/s", or empty if rays are not counted.
   [[nodiscard]] std::string speed() const {
     return rays_ > 0 ? fmt::format(", {:.2f} Mrays/s", rays_ / seconds_ * 1e-6) : "";
   }
