@@ -56,7 +56,7 @@ struct SourceFrame {
     std::vector<std::vector<std::byte>> textures;  ///< tightly packed
   };
   double time = 0;     ///< of the scene, seconds
-  double seconds = 0;  ///< that it took
+  double seconds = 0;  ///< of work
   std::vector<Volume> volumes;
   std::vector<std::string> remarks = {};  ///< for the operator
   std::uint64_t rays = 0;                 ///< traced for it, if counted

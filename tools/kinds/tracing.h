@@ -24,8 +24,8 @@ void for_all(std::size_t count, ddgi::ThreadPool& pool, const Body& body) {
   return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
 }
 
-/// The unit vector at an angle of this cosine to the unit vector `axis`. `turn`: position around
-/// the axis, in whole turns.
+/// The unit vector at an angle of this cosine to the unit vector `axis`, rotated around it by
+/// `turn` of a whole turn.
 [[nodiscard]] inline ddgi::Vec3 around(ddgi::Vec3 axis, float cosine, float turn) {
   ddgi::Vec3 u, v;
   ddgi::basis(axis, u, v);

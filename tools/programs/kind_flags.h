@@ -27,11 +27,11 @@ void add_kind_flags(tools::Command& app, KindFlags& flags);
 /// --set of a client that draws, and its settings for the end of --help.
 void add_drawing_flag(tools::Command& app, DrawingFlags& flags);
 [[nodiscard]] std::string drawing_help();
-/// Throws tools::Error of Exit::usage if another kind than probes is traced and a flag for probes,
-/// or one of another kind's own, was given.
+/// Throws tools::Error of Exit::usage if another kind than probes is traced and a kind's own flag,
+/// or one of `of_probes`, was given.
 void refuse_flags_of_probes(const tools::Command& app, const KindFlags& flags,
                             std::span<const char* const> of_probes);
-/// Throws tools::Error of Exit::usage if the kind is not culled and a flag for culling was given.
+/// Throws tools::Error of Exit::usage if the kind is not culled and one of `of_culled` was given.
 void refuse_flags_of_culled(const tools::Command& app, const KindFlags& flags,
                             std::span<const char* const> of_culled);
 [[nodiscard]] const TracedKind& traced_kind(const KindFlags& flags);

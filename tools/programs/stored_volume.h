@@ -38,7 +38,7 @@ class StoredVolume {
   [[nodiscard]] std::uint64_t triangles() const;
   /// What an incomplete container lacks; empty if it is complete. For a pipe, call it after show().
   [[nodiscard]] const std::string& missing() const noexcept { return missing_; }
-  /// The textures that were coded with loss; empty if none was.
+  /// Names the first texture that was coded with loss; empty if none was.
   [[nodiscard]] std::string loss() const;
   [[nodiscard]] FrameFacts facts_at(std::uint64_t frame) const;
   /// Overrides the stored geometry.

@@ -68,7 +68,7 @@ Exit list_scenes() {
   return Exit::ok;
 }
 
-/// Writes the scene as glTF, if wanted with the coordinates of its irradiance map as TEXCOORD_1.
+/// Writes the scene as glTF, for irradiance maps with their coordinates as TEXCOORD_1.
 void export_scene(const Options& o, const Scene& scene, const tools::InputFiles& inputs) {
   const TracedKind& kind = traced_kind(o.kind);
   const bool map = kind.name == "irradiance_maps";

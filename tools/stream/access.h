@@ -1,4 +1,4 @@
-// Who is let in: one token for all, or each user's own. Wrong ones are counted, by address.
+// Access of clients: one token for all, or one per user. Counts wrong tokens by address.
 #pragma once
 
 #include "allowance.h"
@@ -17,30 +17,30 @@ namespace gicodec::streaming {
 
 class Access {
  public:
-  /// Without a token and without a file of users everybody is let in. Throws tools::Error.
+  /// Without a token and without a file of users every client may connect. Throws tools::Error.
   Access(std::string token, std::string users_file);
 
   void opened(ConnectionId connection, std::string host) {
     connections_[connection].host = std::move(host);
   }
   void closed(ConnectionId connection) { connections_.erase(connection); }
-  /// Nothing if the client may come in.
+  /// nullopt if the client may connect, else the reason to reject it.
   [[nodiscard]] std::optional<Reason> judge(ConnectionId connection, std::string_view token,
                                             double now);
-  /// Whose token it said; empty if there are no users.
+  /// The user whose token the client sent; empty if there are no users.
   [[nodiscard]] std::string user(ConnectionId connection) const;
 
-  /// The file of users as it is now. Throws tools::Error.
+  /// Reads the file of users again. Throws tools::Error.
   [[nodiscard]] Users read() const;
-  /// From now on these.
+  /// Replaces the users.
   void use(Users users) { users_ = std::move(users); }
-  /// Connections whose user is gone or has another token now.
+  /// Connections whose user was removed or has another token.
   [[nodiscard]] std::vector<ConnectionId> outdated() const;
 
   [[nodiscard]] bool asks() const { return !token_.empty() || !file_.empty(); }
   [[nodiscard]] const std::string& file() const { return file_; }
   [[nodiscard]] std::size_t users() const { return users_.size(); }
-  [[nodiscard]] std::uint64_t unheard() const { return unheard_; }  ///< guesses
+  [[nodiscard]] std::uint64_t unheard() const { return unheard_; }  ///< wrong tokens
 
  private:
   struct Connection {

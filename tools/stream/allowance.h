@@ -1,5 +1,5 @@
-// How often somebody may do something: so many times at once, and so many more a second. Counted
-// for each address, in bounded room.
+// Allowance: limits how often each address may do something, by a burst and a rate per second. Its
+// memory is bounded.
 #pragma once
 
 #include <cstddef>
@@ -12,9 +12,9 @@ class Allowance {
  public:
   Allowance(double burst, double per_second) : burst_(burst), per_second_(per_second) {}
 
-  /// True if nothing is used up.
+  /// True if the address has some left.
   [[nodiscard]] bool has(const std::string& host, double now) const;
-  /// Uses up one, whether there is one or not.
+  /// Uses one, even if none is left.
   void take(const std::string& host, double now);
 
  private:
@@ -24,7 +24,7 @@ class Allowance {
   [[nodiscard]] double left(const Left& left, double now) const;
 
   double burst_, per_second_;
-  std::map<std::string, Left> hosts_;  ///< those who have less than the burst
+  std::map<std::string, Left> hosts_;  ///< addresses that have less than the burst
 };
 
 }  // namespace gicodec::streaming

@@ -11,7 +11,7 @@
 
 namespace gicodec::streaming {
 
-/// One thread at a time but for the work itself.
+/// One thread at a time, apart from the work itself.
 template <typename Request, typename Result>
 class Background {
  public:

@@ -1,4 +1,4 @@
-// Where a client looks from.
+// The camera of a client.
 #pragma once
 
 #include "ddgi/scene.h"
@@ -23,7 +23,7 @@ class CameraPath {
   /// `scene` may be nullptr, must outlive it. Throws tools::Error of Exit::usage.
   CameraPath(const CameraFlags& flags, const ddgi::Scene* scene);
 
-  /// False if nothing says where to look from.
+  /// False if neither flags nor a scene give a camera.
   [[nodiscard]] bool known() const { return fixed_.has_value() || scene_ != nullptr; }
   /// Precondition: known().
   [[nodiscard]] ddgi::Camera at(double time) const;

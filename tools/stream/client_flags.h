@@ -1,4 +1,4 @@
-// What gi-client can be told on its command line.
+// Flags of gi-client.
 #pragma once
 
 #include "client_camera.h"
@@ -29,7 +29,7 @@ struct ClientFlags {
 };
 
 void add_client_flags(tools::Command& app, ClientFlags& flags);
-/// Of --subscribe; nothing for all blocks. Throws tools::Error.
+/// Parses --subscribe; nullopt: all blocks. Throws tools::Error.
 [[nodiscard]] std::optional<Box3> parse_box(const std::string& text);
 /// How pictures are drawn. Throws tools::Error.
 [[nodiscard]] ddgi::RenderOptions render_options(const ClientFlags& flags);

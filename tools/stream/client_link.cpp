@@ -81,8 +81,8 @@ void ClientLink::run() {
     double last_open = now(), backoff = kFirstBackoff;
     while (!stop_ && state_ != State::ended && state_ != State::failed) {
       state_ = State::connecting;
-      // From another port each time: answers to attempts that were given up take this one for one
-      // of those.
+      // A new port for each attempt: late answers to earlier attempts would be taken for answers to
+      // this one.
       Net net(options_.server.via, options_.net);
       if (const Link link = connect(net)) {
         late_ = false;
@@ -163,7 +163,7 @@ void ClientLink::serve(Net& net, Link link) {
   while (!stop_) {
     for (bool more = net.next(event, 2); more; more = net.next(event, 0)) {
       if (event.type == NetEvent::Type::closed) {
-        // The reason may still wait to be read.
+        // The Goodbye may still be in the client's queue.
         while (!client_.idle() && !stop_) wait(1e-3);
         if (!over()) lost();
         return;
@@ -177,7 +177,7 @@ void ClientLink::serve(Net& net, Link link) {
     }
     if (now() - viewed > kViewInterval) {
       const std::lock_guard lock(mutex_);
-      // Without memory the server goes by the last one.
+      // Without memory the server keeps the last viewpoint.
       if (view_) static_cast<void>(client_.set_viewpoint(*std::exchange(view_, {})));
       viewed = now();
     }
@@ -198,8 +198,8 @@ void ClientLink::send_messages(Net& net, Link link) {
   for (Message& message : client_.take_messages()) net.send(link, {std::move(message)});
 }
 
-/// After a Goodbye, whoever said it, the server closes. If both ends did, ENet would forget to
-/// answer one of them, and the server would keep the place until its time-out.
+/// After a Goodbye of either end, the server closes the link. If both ends closed it, ENet would
+/// not answer one of them, and the server would keep the place until its time-out.
 void ClientLink::leave(Net& net, Link link) {
   const double end = now() + kGoodbye;
   NetEvent event;

@@ -1,4 +1,4 @@
-// A client's connection on a thread of its own: connects, carries messages, comes back after a
+// A client's connection on a thread of its own: connects, carries messages, reconnects after a
 // loss.
 #pragma once
 
@@ -17,14 +17,14 @@ namespace gicodec::streaming {
 struct LinkOptions {
   Address server;
   NetOptions net;
-  double patience = 15;  ///< seconds without a connection after which it gives up
+  double patience = 15;  ///< seconds without a connection before it gives up
   bool quiet = false;
 };
 
-/// Why there is no connection, for a person.
+/// The reason why there is no connection, for people.
 [[nodiscard]] std::string no_answer(const Address& server, const std::string& why = {});
 [[nodiscard]] std::string refused(const Address& server, const std::string& why);
-/// What is wrong with what the server sends, by the status of the client that took it.
+/// The fault in the server's messages, for people. `status`: of Client::receive().
 [[nodiscard]] std::string unusable(Status status);
 
 class ClientLink {
@@ -33,19 +33,19 @@ class ClientLink {
     connecting,
     open,
     ended,   ///< the server has ended
-    failed,  ///< it cannot be reached, or has turned the client away; see message()
+    failed,  ///< the server cannot be reached, or rejected the client; see message()
   };
 
   /// The client must outlive it.
   ClientLink(const LinkOptions& options, ClientThread& client);
-  /// close() if that was not done.
+  /// Calls close() if the caller has not.
   ~ClientLink();
   ClientLink(const ClientLink&) = delete;
   ClientLink& operator=(const ClientLink&) = delete;
 
-  /// Tells the server; of several in short time the last one.
+  /// Sends the viewpoint; of several within a short time only the last.
   void set_viewpoint(const Viewpoint& view);
-  /// Not if they are those of a session that was before this one.
+  /// Sends nothing if the volume is of an earlier session.
   void subscribe(std::uint16_t volume, std::uint8_t group, const BlockMask& blocks) {
     static_cast<void>(client_.subscribe(volume, blocks, group));
   }
@@ -77,11 +77,11 @@ class ClientLink {
   std::atomic<unsigned> connections_ = 0, round_trip_ = 0;
   std::atomic<bool> stop_ = false;
   unsigned losses_ = 0;
-  std::string why_;    ///< the last attempt came to nothing, as far as that is known
-  bool late_ = false;  ///< the last Hello was, for the server: the link's fault, and not for ever
+  std::string why_;    ///< why the last attempt failed, if known
+  bool late_ = false;  ///< the server got the last Hello too late: a slow link, worth another try
 
-  mutable std::mutex mutex_;       ///< guards what follows
-  std::optional<Viewpoint> view_;  ///< to be told
+  mutable std::mutex mutex_;       ///< guards the members below
+  std::optional<Viewpoint> view_;  ///< to send
   std::string message_;
 
   std::jthread thread_;  // Last: ends before the others do.

@@ -29,7 +29,7 @@ using namespace gicodec::streaming;
 using tools::Exit;
 using tools::fail;
 
-/// Says what came short of what was asked for; fewer pictures than that are well, none are not.
+/// Reports fewer updates than requested, or no picture; some missing pictures are no failure.
 Exit enough(const ClientFlags& o, std::uint64_t updates, std::uint32_t pictures,
             const std::string& why) {
   if (updates < o.viewer.updates) {
@@ -45,7 +45,7 @@ Exit enough(const ClientFlags& o, std::uint64_t updates, std::uint32_t pictures,
   fail(Exit::io, "{}", no_answer(o.viewer.link.server));
 }
 
-/// Of what came.
+/// What was received, for judge().
 struct Received {
   std::uint64_t updates = 0, proofs = 0, failed_proofs = 0, lost = 0;
 };
@@ -101,7 +101,7 @@ Exit run_load_test(const ClientFlags& o, const CameraPath& path) {
                                                : "the time was over");
 }
 
-/// After all else was well.
+/// The exit code of the recording, if all else succeeded.
 Exit recorded(const ClientFlags& o, const ClientRecording* recording) {
   if (recording == nullptr || recording->exit() != Exit::ok)
     return recording == nullptr ? Exit::ok : recording->exit();
@@ -125,7 +125,7 @@ Exit run_viewer(ClientFlags& o, const CameraPath& path, Renderer* renderer,
                             : Recorded{recording->files(), recording->left(), recording->bytes()};
   if (!o.quiet || o.format == "json") summarise(result, made, o.format == "json");
   const std::uint64_t lost = result.connections == 1 ? result.statistics.gaps : 0;
-  // Unless there is worse to tell.
+  // A failed proof is worse and comes first.
   if (failed && result.statistics.failed_proofs == 0)
     fail(result.unusable ? Exit::bad_input : Exit::io, "{}", result.message);
   const Exit exit =
@@ -143,7 +143,7 @@ Exit run_viewer(ClientFlags& o, const CameraPath& path, Renderer* renderer,
   return came == Exit::ok ? recorded(o, recording) : came;
 }
 
-/// All that takes long before there is a client.
+/// Everything slow to load before there is a client.
 struct Loaded {
   std::unique_ptr<ddgi::Scene> scene;
   std::unique_ptr<Renderer> renderer;
@@ -205,7 +205,7 @@ Exit run(ClientFlags& o) {
   const ddgi::Scene* const scene = loaded->scene.get();
   if (scene != nullptr) o.viewer.scene = ddgi::scene_id(kinds::scene_label(o.scene), *scene);
   const CameraPath path(o.camera, scene);
-  // Without a view there is nothing that the server could choose by.
+  // Without a viewpoint the server cannot choose blocks.
   o.viewer.subscribe_all = o.subscribe == "all" || (o.subscribe.empty() && !path.known());
   if (o.simulate > 0) return run_load_test(o, path);
   std::unique_ptr<ClientRecording> recording;

@@ -17,12 +17,12 @@
 namespace gicodec::streaming {
 namespace {
 
-/// A server that changes its volumes all the time does not fill a folder.
+/// Limits the files that a server causes by changing its volumes all the time.
 constexpr std::uint32_t kMaxFiles = 1000;
-/// Snapshots are written again where volumes or sessions change, which costs a server nothing.
+/// Limits the snapshots that a server causes by changing volumes or sessions.
 constexpr std::uint64_t kMaxGrowth = 64, kFreeGrowth = std::uint64_t{1} << 30;
 
-/// Says what becomes of the client.
+/// The end of each message.
 constexpr const char* kGoesOn = "; the recording ends here, the client goes on";
 
 /// x.gic, x.2.gic, x.3.gic, ...
@@ -34,7 +34,7 @@ std::string numbered(const std::string& path, std::uint32_t number) {
   return fmt::format("{}.{}{}", base, number, named ? ".gic" : "");
 }
 
-/// Where a file stands until it has its name; empty if it is written directly.
+/// The path of a growing file; empty if it is written directly.
 std::string partial_of(const std::string& path) {
   std::error_code error;
   std::string target = path;
@@ -44,7 +44,7 @@ std::string partial_of(const std::string& path) {
   return std::filesystem::exists(target, error) ? target : "";
 }
 
-/// Whether a name is that of an open file.
+/// True if the path names this open file.
 bool names(const std::string& path, std::FILE* file) {
   struct stat opened {
   }, named{};
@@ -52,7 +52,7 @@ bool names(const std::string& path, std::FILE* file) {
          opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
 }
 
-/// What "gicodec encode" notes of dumps: where blocks stand in memory and in the world.
+/// Adds the metadata that "gicodec encode" adds for dumps: layout and geometry.
 void note_dumps(ContainerDescription& description) {
   for (TextureEntry& texture : description.textures) {
     Metadata& metadata = texture.metadata;
@@ -145,7 +145,7 @@ void ClientRecording::end_file() {
   name_file(bytes);
 }
 
-/// Where the name cannot be had, what was recorded is kept without.
+/// Renames the file; keeps it as it is if the name is not available.
 void ClientRecording::name_file(std::uint64_t bytes) {
   written_ += bytes;
   const std::unique_ptr<tools::AtomicFile> file = std::move(file_);
@@ -165,12 +165,12 @@ void ClientRecording::name_file(std::uint64_t bytes) {
     if (partial_.empty() || !names(partial_, file->stream())) throw;
     left_.push_back(partial_);
     bytes_ += bytes;
-    if (left.empty()) throw;  // It says so.
+    if (left.empty()) throw;  // Its message says so.
     tools::fail(problem.code(), "{}; {} holds what was recorded", problem.what(), left);
   }
 }
 
-/// A server that sends little does not fill a disk.
+/// Ends the recording if the server causes far more bytes than it sends.
 void ClientRecording::check_limits(const Client& client) {
   const std::uint64_t bytes = written_ + (recorder_ ? recorder_->bytes_written() : 0);
   const std::uint64_t received = client.statistics().bytes;

@@ -1,4 +1,4 @@
-// gi-client --record: what the client receives, as containers.
+// gi-client --record: writes the received packets as containers.
 #pragma once
 
 #include "dump/error.h"
@@ -16,7 +16,7 @@
 
 namespace gicodec::streaming {
 
-/// Throws tools::Error unless the files that a recording begins with destroy nothing.
+/// Throws tools::Error if the recording's first files would overwrite a file that must stay.
 void check_recording(const std::string& path, const tools::InputFiles& inputs,
                      tools::Existing existing);
 
@@ -27,29 +27,29 @@ struct RecordingOptions {
   bool quiet = false;
 };
 
-/// A file for each session and each list of volumes in it: x.gic, x.2.gic and so on. While it grows
-/// a file is FILE.partial, with all that came in it. A file that cannot be written ends the
-/// recording, not the client; so does a server that makes it write far more than it sends.
+/// Writes a file for each session and each list of volumes in it: x.gic, x.2.gic and so on. A
+/// growing file is FILE.partial and has all packets so far. If a file cannot be written, or the
+/// server causes far more bytes than it sends, the recording ends; the client continues.
 class ClientRecording final : public ClientListener {
  public:
   /// Opens the first file; throws tools::Error.
   explicit ClientRecording(RecordingOptions options);
   ClientRecording(const ClientRecording&) = delete;
   ClientRecording& operator=(const ClientRecording&) = delete;
-  /// finish() if that was not done.
+  /// Calls finish() if the caller has not.
   ~ClientRecording() override;
 
   void updated(const Client& client,
                std::span<const UpdateMessage::Part> packets) noexcept override;
-  /// Gives the last file its name. Once the client has ended.
+  /// Gives the last file its name. Call it once the client has ended.
   void finish() noexcept;
-  /// Those that are there, with something in them.
+  /// The files that are not empty.
   [[nodiscard]] const std::vector<std::string>& files() const noexcept { return files_; }
-  /// Those that could not have their names, and are FILE.partial.
+  /// The files that could not get their names and remain FILE.partial.
   [[nodiscard]] const std::vector<std::string>& left() const noexcept { return left_; }
-  /// Of all of these.
+  /// Bytes of all these files.
   [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_; }
-  /// Exit::ok unless the recording failed or is not whole, which has been said.
+  /// Exit::ok unless the recording failed or is incomplete; a message has said so.
   [[nodiscard]] tools::Exit exit() const noexcept { return exit_; }
 
  private:
@@ -63,13 +63,13 @@ class ClientRecording final : public ClientListener {
   void require(Status status) const;
 
   RecordingOptions options_;
-  std::string name_, partial_;  ///< of the present file; none beside a device
+  std::string name_, partial_;  ///< of the present file; a device has no partial one
   std::uint32_t number_ = 0;    ///< of the present file
   std::unique_ptr<tools::AtomicFile> file_;
   std::optional<FileSink> sink_;
-  std::optional<ClientRecorder> recorder_;  ///< once there is something to record
+  std::optional<ClientRecorder> recorder_;  ///< from the first packet on
   std::vector<std::string> files_, left_;
-  std::uint64_t written_ = 0, bytes_ = 0;  ///< to files that are finished; of those that are there
+  std::uint64_t written_ = 0, bytes_ = 0;  ///< of finished files; of files that are kept
   bool over_ = false;
   tools::Exit exit_ = tools::Exit::ok;
 };

@@ -1,4 +1,4 @@
-// What gi-client says at its end, on standard output.
+// The summary that gi-client prints at its end.
 #pragma once
 
 #include "simulate.h"

@@ -46,7 +46,7 @@ bool reaches(int descriptor, const std::string& path) {
   return connect(descriptor, reinterpret_cast<const sockaddr*>(&to), sizeof to) == 0;
 }
 
-/// Removes a socket that is left of a server that has ended.
+/// Removes the socket of a server that has ended.
 void remove_stale(const std::string& path) {
   struct stat found {};
   if (lstat(path.c_str(), &found) != 0) return;
@@ -58,7 +58,7 @@ void remove_stale(const std::string& path) {
   unlink(path.c_str());
 }
 
-/// Device and inode of what has this name; zeros for nothing.
+/// Device and inode of the file at this path; zeros if there is none.
 std::pair<std::uint64_t, std::uint64_t> identity(const std::string& path) {
   struct stat found {};
   if (lstat(path.c_str(), &found) != 0) return {};

@@ -1,5 +1,5 @@
-// A socket through which the operator of a running server asks and tells it something: one line of
-// a command there, the answer back. `gi-server --ask` is the other end.
+// The operator's socket of a running server: takes one line with a command, sends the answer.
+// `gi-server --ask` is the other end.
 #pragma once
 
 #include <cstdint>
@@ -12,15 +12,15 @@ namespace gicodec::streaming {
 
 class Control {
  public:
-  /// Makes the socket, which only its owner may use. Takes the place of one that nobody listens
-  /// to any more; throws tools::Error of Exit::io where something else is in the way.
+  /// Creates the socket, which only its owner may use. Replaces a socket without a listener; throws
+  /// tools::Error of Exit::io if the path is any other file.
   explicit Control(std::string path);
   ~Control();
   Control(const Control&) = delete;
   Control& operator=(const Control&) = delete;
 
-  /// Answers the commands that have come. Never waits. An answer that begins with "error: " is
-  /// shown as one.
+  /// Answers the commands that have arrived, without waiting. An answer that begins with "error: "
+  /// makes ask() fail.
   void serve(const std::function<std::string(const std::string& command)>& answer);
 
  private:
@@ -40,8 +40,8 @@ class Control {
   std::list<Asker> askers_;
 };
 
-/// What the server at this socket answers. Throws tools::Error: Exit::io if there is none, Exit::
-/// bad_input for an answer that is an error.
+/// Sends a command to the server at this socket; returns its answer. Throws tools::Error of
+/// Exit::io if there is no server, of Exit::bad_input if the answer is an error.
 [[nodiscard]] std::string ask(const std::string& path, const std::string& command);
 
 }  // namespace gicodec::streaming

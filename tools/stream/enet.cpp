@@ -18,8 +18,8 @@ using tools::fail;
 /// ENet checks the size of what is sent against the limit of what is received.
 constexpr std::size_t kMaxSent = std::size_t{1} << 30;
 constexpr std::uint32_t kMilliseconds = 1000;
-/// Bytes that the system keeps for us while an update is made, as far as it allows: what arrives
-/// beyond them is lost and has to be sent again.
+/// Receive buffer in bytes, as far as the system allows. While an update is made, packets beyond it
+/// are lost and must be sent again.
 constexpr int kSocketBuffer = 4 << 20;
 
 ENetAddress resolve(const Address& address) {
@@ -77,19 +77,19 @@ Enet::Link Enet::connect(const Address& address) {
   return link;
 }
 
-/// ENet's window of 64 KiB would let through a few Mbps where the way is long, and its throttle
-/// closes it where delays vary; how much is under way is limited by the host's options instead.
+/// ENet's window of 64 KiB allows only a few Mbps on long paths, and its throttle closes where
+/// delays vary. NetOptions::window limits the bytes in flight instead.
 void Enet::prepare(Link link) const {
   link->windowSize = options_.window;
   link->packetThrottleAcceleration = ENET_PEER_PACKET_THROTTLE_SCALE;
   link->packetThrottleDeceleration = 0;
   const auto least = static_cast<std::uint32_t>(std::lround(options_.timeout * kMilliseconds));
-  // Any answer begins it anew, however long the way is.
+  // Any answer restarts the time-out, however long the path.
   enet_peer_timeout(link, 1, least, least);
 }
 
-/// Who knocked and went away keeps no place for half a minute; and ENet puts its own window back
-/// whenever somebody came or went.
+/// Frees the places of peers that did not finish connecting, which ENet keeps for half a minute,
+/// and sets the window again, which ENet resets whenever a peer comes or goes.
 void Enet::tend() {
   constexpr std::uint32_t kMax = 2000, kEvery = 100;  // milliseconds
   const std::uint32_t now = enet_time_get();
@@ -109,7 +109,7 @@ bool Enet::next(NetEvent& event, unsigned milliseconds) {
   tend();
   ENetEvent got{};
   const int result = enet_host_service(host_, &got, milliseconds);
-  // An interrupted wait is no failure: the caller looks at its signals.
+  // An interrupted wait is no failure: the caller checks for signals.
   if (result <= 0 || got.type == ENET_EVENT_TYPE_NONE) return false;
   event = {};
   event.link = {got.peer, nullptr};
@@ -143,7 +143,7 @@ bool Enet::send(Link link, const OutgoingMessage& message) {
   return queued;
 }
 
-/// enet_host_service() with an event looks at the socket only when none is left.
+/// enet_host_service() with an event reads the socket only when no event is left.
 void Enet::attend() { enet_host_service(host_, nullptr, 0); }
 void Enet::flush() { enet_host_flush(host_); }
 void Enet::close(Link link) { enet_peer_disconnect_later(link, 0); }

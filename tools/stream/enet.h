@@ -1,4 +1,4 @@
-// ENet as the programs use it: one reliable, ordered channel of whole messages over UDP.
+// ENet: one reliable, ordered channel of whole messages over UDP.
 #pragma once
 
 #include "transport.h"
@@ -9,7 +9,7 @@ struct _ENetHost;  // NOLINT(*-reserved-identifier)
 
 namespace gicodec::streaming {
 
-/// A UDP socket and its links. Everything on one thread; throws tools::Error of Exit::io.
+/// A UDP socket and its links. One thread; throws tools::Error of Exit::io.
 class Enet {
  public:
   using Link = _ENetPeer*;
@@ -30,11 +30,11 @@ class Enet {
   [[nodiscard]] int descriptor() const;
   /// False if the link is not open any more.
   bool send(Link link, const OutgoingMessage& message);
-  /// Answers what has arrived, which waits for next().
+  /// Confirms packets that have arrived; next() returns them later.
   void attend();
   /// Puts what is queued on the wire without waiting for next().
   void flush();
-  /// Closes when all that was sent has arrived; `closed` follows.
+  /// Closes the link once all messages have arrived; `closed` follows.
   void close(Link link);
   /// Closes at once, without an event.
   void abandon(Link link);
@@ -44,7 +44,7 @@ class Enet {
   [[nodiscard]] static std::string address_of(Link link);  ///< "127.0.0.1:51022"
   [[nodiscard]] static unsigned round_trip_ms(Link link);
 
-  /// A number of the caller's that belongs to the link; 0 at first.
+  /// Sets the caller's number of the link; 0 at first.
   static void set_tag(Link link, std::uintptr_t tag);
   [[nodiscard]] static std::uintptr_t tag(Link link);
 

@@ -15,9 +15,9 @@
 
 namespace gicodec::streaming {
 
-/// What `work` returns or throws, or nothing once the program is interrupted. The work has a thread
-/// of its own, which in that case still runs: parsers of files cannot be told to stop. What it
-/// refers to has to stay; go on to end_now().
+/// Runs `work` on a thread of its own; returns or throws what it does, or nullopt once the program
+/// is interrupted. Then the thread still runs, because parsers of files cannot be stopped: call
+/// end_now(), and destroy nothing that the work refers to.
 template <typename Work>
 [[nodiscard]] std::optional<std::invoke_result_t<Work>> unless_interrupted(Work work) {
   using Result = std::invoke_result_t<Work>;
@@ -37,8 +37,8 @@ template <typename Work>
   }
 }
 
-/// Ends a program of which a thread is still loading: nothing is taken from under it. For the time
-/// before there are connections.
+/// Ends a program while a thread is still loading, without destroying anything that it uses. For
+/// the time before there are connections.
 [[noreturn]] inline void end_now(tools::Exit exit) {
   std::fflush(stdout);
   std::quick_exit(static_cast<int>(exit));

@@ -1,5 +1,5 @@
-// Lines for a person on standard error. It may be closed, full, or a pipe that nobody reads any
-// more: what cannot be written there is lost, and the program goes on.
+// Lines for people on standard error. A line that cannot be written, e.g. to a full disk or a
+// closed pipe, is lost; the program continues.
 #pragma once
 
 #include "dump/text.h"
@@ -20,12 +20,12 @@ inline std::string count(std::uint64_t number, std::string_view thing) {
   return fmt::format("{} {}{}", number, thing, number == 1 ? "" : "s");
 }
 
-/// As it is.
+/// Writes the text unchanged.
 inline void log_text(std::string_view text) noexcept {
   std::fwrite(text.data(), 1, text.size(), stderr);
 }
 
-/// A line, printable().
+/// Writes a line, made printable().
 template <typename... Args>
 void log_line(fmt::format_string<Args...> format, Args&&... args) noexcept {
   try {
@@ -35,21 +35,21 @@ void log_line(fmt::format_string<Args...> format, Args&&... args) noexcept {
   }
 }
 
-/// Empties the line on a terminal that shows the present state.
+/// Clears the status line of a terminal.
 inline void clear_status() noexcept { log_text("\r\033[K"); }
 
-/// Shows the present state there.
+/// Writes the status line of a terminal.
 template <typename... Args>
 void show_status(fmt::format_string<Args...> format, Args&&... args) {
   log_text("\r\033[K" + fmt::format(format, std::forward<Args>(args)...));
 }
 
-/// How many lines strangers may cause, so that they cannot fill a disk.
+/// Limits the lines that strangers may cause, so that they cannot fill a disk.
 class LogLimit {
  public:
   LogLimit(double burst, double per_second) : burst_(burst), per_second_(per_second) {}
 
-  /// False if the line is to be left out.
+  /// False if the line must be left out.
   [[nodiscard]] bool pass(double now) {
     left_ = std::min(burst_, left_ + std::max(0.0, now - at_) * per_second_);
     at_ = now;
@@ -57,7 +57,7 @@ class LogLimit {
     left_ -= 1;
     return true;
   }
-  /// Since the last call.
+  /// The lines left out since the last call.
   [[nodiscard]] std::uint64_t left_out() { return std::exchange(left_out_, 0); }
 
  private:

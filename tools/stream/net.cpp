@@ -35,7 +35,7 @@ Link Net::connect(const Address& address) {
   return {nullptr, web_->connect(address)};
 }
 
-/// Neither transport can keep the other from being heard.
+/// Asks both transports in turn, so that neither starves the other.
 bool Net::next_of_any(NetEvent& event) {
   web_first_ = !web_first_;
   if (web_ && web_first_ && web_->next(event)) return true;

@@ -1,5 +1,4 @@
-// The network as the programs see it: links over ENet and over WebSockets, and what happens on
-// them.
+// The network of the programs: links over ENet and WebSockets, and their events.
 #pragma once
 
 #include "enet.h"
@@ -12,10 +11,10 @@
 
 namespace gicodec::streaming {
 
-/// Everything on one thread; throws tools::Error of Exit::io.
+/// One thread; throws tools::Error of Exit::io.
 class Net {
  public:
-  /// Waits for connections there; at least one has to be given.
+  /// Listens at these addresses, of which at least one must be given.
   Net(const std::optional<Address>& enet, const std::optional<WebListen>& web,
       const NetOptions& options);
   /// Only connects, to servers of this kind.
@@ -29,26 +28,27 @@ class Net {
   bool send(Link link, const OutgoingMessage& message);
   /// Puts what is queued on the wire without waiting for next().
   void flush();
-  /// Answers what has arrived, which waits for next(): who decodes for long is not taken for gone.
+  /// Confirms packets that have arrived, so that a busy program does not time out; next() returns
+  /// them later.
   void attend();
-  /// Closes when all that was sent has arrived; `closed` follows.
+  /// Closes the link once all messages have arrived; `closed` follows.
   void close(Link link);
   /// Closes at once, without an event.
   void abandon(Link link);
 
-  /// ENet's, then that of WebSockets.
+  /// The port of ENet, then that of WebSockets.
   [[nodiscard]] std::vector<std::uint16_t> ports() const;
-  [[nodiscard]] static std::string host_of(Link link);     ///< who counts as one stranger
+  [[nodiscard]] static std::string host_of(Link link);     ///< origin, see Server::connect()
   [[nodiscard]] static std::string address_of(Link link);  ///< "127.0.0.1:51022"
   [[nodiscard]] static unsigned round_trip_ms(Link link);
 
-  /// A number of the caller's that belongs to the link; 0 at first.
+  /// Sets the caller's number of the link; 0 at first.
   static void set_tag(Link link, std::uintptr_t tag);
   [[nodiscard]] static std::uintptr_t tag(Link link);
 
-  /// What the port of WebSockets tells of the server.
+  /// Sets the metrics that the port of WebSockets shows.
   void show(std::string metrics);
-  /// Reads the certificate again, for connections that begin from now on. Throws tools::Error.
+  /// Reads the certificate again, for new connections. Throws tools::Error.
   void reload();
 
  private:

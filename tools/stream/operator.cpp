@@ -1,4 +1,4 @@
-// What the operator of a running server asks of it, and what its metrics tell.
+// The commands of a running server's operator, and its metrics.
 #include "clock.h"
 #include "dump/error.h"
 #include "metrics.h"
@@ -52,10 +52,10 @@ std::string Service::drop(const std::string& client) {
                      tools::printable(client));
 }
 
-/// Users and the certificate as their files are now. Who may not come any more goes.
+/// Reads the files of users and certificate again. Drops clients that may no longer connect.
 std::string Service::reload() {
   try {
-    Users users = access_->read();  // Nothing changes unless all of it is well.
+    Users users = access_->read();  // Changes nothing unless all can be read.
     net_.reload();
     access_->use(std::move(users));
   } catch (const tools::Error& error) {

@@ -1,4 +1,4 @@
-// Where a client's pictures go: their names, and which files they may take the place of.
+// The folder of a client's pictures: their names, and the files that they may replace.
 #pragma once
 
 #include "dump/file.h"
@@ -11,11 +11,10 @@ namespace gicodec::streaming {
 
 class PictureFolder {
  public:
-  /// The folder exists by the time that pictures are written.
-  /// `inputs` never give way to a picture.
+  /// The folder must exist once pictures are written. A picture never replaces one of `inputs`.
   PictureFolder(std::string folder, tools::Existing existing, tools::InputFiles inputs = {});
 
-  /// A picture that may be written now, and what it may take the place of when it is ready.
+  /// The path of a picture, and whether it may replace a file once it is ready.
   struct Place {
     std::string path;
     tools::Existing existing;
@@ -25,8 +24,8 @@ class PictureFolder {
 
   /// FOLDER/frame.NNNN.png
   [[nodiscard]] Place frame(std::uint32_t number);
-  /// FOLDER/VOLUME.TEXTURE.NNNN.png, whatever names the server chose: characters other than
-  /// letters, digits and '-' become '_', and long names are cut.
+  /// FOLDER/VOLUME.TEXTURE.NNNN.png. In the server's names, characters other than letters, digits
+  /// and '-' become '_'; long names are cut.
   [[nodiscard]] Place texture(const std::string& volume, const std::string& texture,
                               std::uint32_t number);
 
@@ -37,7 +36,8 @@ class PictureFolder {
   tools::Existing existing_;
   tools::InputFiles inputs_;
   std::uint32_t number_ = 0;
-  std::set<std::string> made_;  ///< of this number: names of textures may become the same
+  std::set<std::string>
+      made_;  ///< names of this number, because names of textures may become equal
 };
 
 }  // namespace gicodec::streaming

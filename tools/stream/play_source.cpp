@@ -29,17 +29,17 @@ namespace {
 using tools::Exit;
 using tools::fail;
 
-/// The textures of one frame after the other, from either kind of input.
+/// Plays the textures frame by frame, from a container or from dumps.
 struct Player {
   virtual ~Player() = default;
   virtual void rewind(bool allow_incomplete) = 0;
-  /// False at the end; the textures stay what they are.
+  /// Reads the next frame. False at the end, where the textures stay as they are.
   virtual bool advance() = 0;
 
-  std::vector<SourceVolume> volumes;             ///< without a place, if none is told
+  std::vector<SourceVolume> volumes;             ///< without geometry, if it is unknown
   std::vector<std::vector<std::byte>> textures;  ///< of all volumes
   kinds::FrameFacts facts;
-  Recording recording;               ///< of which no more frames than are whole are played
+  Recording recording;               ///< only its complete frames are played
   std::vector<std::string> remarks;  ///< since they were last taken
 };
 
@@ -48,7 +48,7 @@ std::string frames_are(std::uint64_t frames, const char* whole) {
   return fmt::format("{} {}frame{}", frames, whole, frames == 1 ? " is" : "s are");
 }
 
-/// What is to be told of the recording. Throws if it has a flaw, unless that is allowed.
+/// Remarks on the recording for the operator. Throws if it has a flaw, unless that is allowed.
 std::vector<std::string> remarks_on(const Recording& recording, bool allowed) {
   std::vector<std::string> remarks = recording.remarks;
   if (recording.flaw.empty()) return remarks;
@@ -61,7 +61,7 @@ std::vector<std::string> remarks_on(const Recording& recording, bool allowed) {
   return remarks;
 }
 
-/// What tells a file from one that takes its name, or from itself with more frames.
+/// Tells a file from another at the same path, and from itself with more frames.
 struct FileState {
   std::filesystem::file_time_type written;
   std::uintmax_t size = 0;
@@ -133,7 +133,7 @@ class RecordingPlayer final : public Player {
   }
 
  private:
-  /// From the first frame on, by the path: files are replaced while they are played.
+  /// Opens the file at the path, which may have been replaced, at its first frame.
   void open() {
     input_ = std::make_unique<tools::ContainerInput>(path_, decoding_);
     at_ = 0;
@@ -141,7 +141,7 @@ class RecordingPlayer final : public Player {
 
   struct Chosen {
     std::vector<SourceVolume> volumes;
-    std::string remark;  ///< on those that cannot be played; empty if all can
+    std::string remark;  ///< on volumes that cannot be played; empty: all can
   };
   Chosen choose() {
     constexpr std::size_t kMaxWords = 4;
@@ -172,13 +172,13 @@ class RecordingPlayer final : public Player {
     return chosen;
   }
 
-  /// Why a volume cannot be played; empty if it can.
+  /// The reason why a volume cannot be played; empty if it can.
   [[nodiscard]] std::string why_not(const VolumeEntry& entry) const {
     const ContainerDescription& description = input_->description();
     return tools::unknown_kind(description, description.textures[entry.first_texture].volume);
   }
 
-  /// As it is stored, its textures as they are decoded.
+  /// The volume as stored, with the layout of decoded textures.
   [[nodiscard]] SourceVolume volume(const VolumeEntry& entry) const {
     SourceVolume made{entry.name, entry.geometry.value_or(VolumeGeometry{}), entry.desc};
     std::size_t id = entry.first_texture;
@@ -202,7 +202,7 @@ class RecordingPlayer final : public Player {
   std::uint64_t at_ = 0;
 };
 
-/// `told`: they say what they are of.
+/// `told`: the dumps' attributes say what they hold.
 [[noreturn]] void fail_no_probes(const std::string& folder, bool told) {
   if (told) {
     fail(Exit::bad_input,
@@ -290,7 +290,7 @@ std::unique_ptr<Player> open(const std::string& path, const PlayOptions& options
   return std::make_unique<RecordingPlayer>(path, options);
 }
 
-/// The next frame. What is damaged only now was whole when the recording was looked through.
+/// Plays the next frame. It was complete when checked, so damage means that the file has changed.
 bool advance(Player& player, std::uint64_t frames) {
   try {
     return player.advance();

@@ -11,7 +11,7 @@
 namespace gicodec::streaming {
 namespace {
 
-/// What a container has said so far.
+/// The state of checking a container.
 class Look {
  public:
   explicit Look(const std::string& path) : input_(path) {}
@@ -24,7 +24,7 @@ class Look {
     } catch (const tools::Error& damage) {
       found_.flaw = damage.what();
     }
-    // The one at the flaw.
+    // The frame with the flaw.
     if (!found_.flaw.empty() && found_.frames > 0 && !last_whole_) --found_.frames;
     for (std::size_t i = 0; i < input_.textures().size(); ++i) {
       const std::string loss = input_.textures()[i].loss();

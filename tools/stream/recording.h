@@ -1,5 +1,4 @@
-// What can be told of a recording before it is played: every packet and file is looked at, none is
-// decoded.
+// Checks a recording before it is played: reads every packet and file, decodes none.
 #pragma once
 
 #include "dump/sequence.h"
@@ -11,15 +10,15 @@
 namespace gicodec::streaming {
 
 struct Recording {
-  std::uint64_t frames = 0;          ///< whole ones, from the first to the end or the flaw
-  std::string flaw;                  ///< what is wrong behind them, and where; empty for nothing
-  std::vector<std::string> remarks;  ///< for the operator: what was lost before
+  std::uint64_t frames = 0;          ///< complete ones before the end or the flaw
+  std::string flaw;                  ///< the fault behind them, and its place; empty: none
+  std::vector<std::string> remarks;  ///< for the operator, on earlier losses
 };
 
-/// Reads a container to its end: its records and their checksums, and that each packet builds on
-/// the one before it. Throws tools::Error if it is no container.
+/// Reads a container to its end. Checks that checksums match and that each packet builds on the one
+/// before it. Throws tools::Error if it is no container.
 [[nodiscard]] Recording look_through(const std::string& container);
-/// Reads the heads of all files.
+/// Reads the headers of all files.
 [[nodiscard]] Recording look_through(const std::vector<tools::Sequence>& dumps);
 
 }  // namespace gicodec::streaming

@@ -80,7 +80,7 @@ sockaddr_in resolve(const Address& address, const char* flag) {
   return resolved;
 }
 
-/// Whether what is sent to one arrives at a socket of the other.
+/// True if packets sent to `to` arrive at a socket listening at `listening`.
 bool reaches(const sockaddr_in& to, const sockaddr_in& listening) {
   constexpr std::uint32_t kLoopback = 127;
   const bool any = listening.sin_addr.s_addr == htonl(INADDR_ANY) &&
@@ -89,10 +89,10 @@ bool reaches(const sockaddr_in& to, const sockaddr_in& listening) {
          (any || to.sin_addr.s_addr == listening.sin_addr.s_addr);
 }
 
-/// A packet on its way.
+/// A delayed packet.
 struct Packet {
   double due = 0;
-  std::uint64_t number = 0;  ///< keeps the order of those that are due at once
+  std::uint64_t number = 0;  ///< keeps the order of packets due at the same time
   int socket = -1;
   sockaddr_in to{};
   bool upward = false;
@@ -102,11 +102,11 @@ struct Packet {
   }
 };
 
-/// One direction of the way.
+/// One direction of the path.
 struct Direction {
   std::uint64_t passed = 0, dropped = 0;
   std::size_t waiting = 0;  ///< bytes
-  double free_at = 0;       ///< when the rate limit lets the next packet begin
+  double free_at = 0;       ///< when the rate limit admits the next packet
 };
 
 class Relay {
@@ -177,7 +177,7 @@ class Relay {
     }
   }
 
-  /// Decides what becomes of a packet.
+  /// Drops, delays or queues a packet.
   void take(std::size_t bytes, int socket, const sockaddr_in& to, bool upward) {
     Direction& d = directions_[upward ? 1 : 0];
     const double draw = std::uniform_real_distribution(0.0, 100.0)(random_);
@@ -212,7 +212,7 @@ class Relay {
   const Options& options_;
   sockaddr_in server_;
   std::mt19937_64 random_;
-  Socket front_;                                  ///< where clients send to
+  Socket front_;                                  ///< that clients send to
   std::map<std::uint64_t, Socket> backs_;         ///< towards the server, one for each client
   std::map<std::uint64_t, sockaddr_in> clients_;  ///< their addresses
   Direction directions_[2];

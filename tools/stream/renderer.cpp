@@ -13,7 +13,7 @@ namespace {
 using tools::Exit;
 using tools::fail;
 
-/// A client's volume as lights are shown it.
+/// A client's volume as a HeldVolume for lights.
 class Held {
  public:
   explicit Held(const ClientVolume& volume, const kinds::HeldVolume* finer = nullptr)

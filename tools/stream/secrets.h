@@ -1,4 +1,4 @@
-// Secrets of users: made, kept as hashes, compared.
+// Secrets of users: makes, hashes and compares them.
 #pragma once
 
 #include <cstddef>
@@ -8,10 +8,10 @@
 
 namespace gicodec::streaming {
 
-/// Takes as long for what differs as for what is equal.
+/// Takes the same time whether they differ or not.
 [[nodiscard]] bool same_secret(std::string_view a, std::string_view b);
 
-/// Bytes of the operating system that nobody can guess. Throws tools::Error of Exit::io.
+/// Unpredictable bytes of the operating system. Throws tools::Error of Exit::io.
 [[nodiscard]] std::string random_bytes(std::size_t size);
 /// PBKDF2 with HMAC and SHA-256, 32 bytes.
 [[nodiscard]] std::string slow_hash(std::string_view secret, std::string_view salt,

@@ -1,4 +1,4 @@
-// What gi-server can be told on its command line.
+// Flags of gi-server.
 #pragma once
 
 #include "programs/kind_flags.h"

@@ -40,8 +40,8 @@ kinds::Source make_source(const ServerFlags& o) {
   return trace_kind(o.kind, std::move(scene), scene_label(o.scene), 1, o.trace_threads);
 }
 
-/// The scene for culling, and for telling clients which one it is: that of the flags, or the
-/// built-in one that a recording names.
+/// The scene for culling and for clients' SceneId: that of the flags, or the built-in one that a
+/// recording names.
 std::optional<ddgi::Scene> scene_of(const ServerFlags& o, kinds::Source& source) {
   kinds::SceneFlags flags = o.scene;
   if (flags.scene.empty() && flags.gltf.empty()) {
@@ -57,9 +57,9 @@ std::optional<ddgi::Scene> scene_of(const ServerFlags& o, kinds::Source& source)
   return scene;
 }
 
-/// What is played may say that it is large in a few bytes.
+/// Limits the memory of a played source, which may claim large textures in a few bytes.
 void check_memory(const ServerFlags& o, const kinds::Source& source) {
-  // Textures as they are read, shown and published, and what is known of each block.
+  // Textures as read, shown and published, and the server's data per block.
   constexpr std::uint64_t kCopies = 3, kBlock = 256;
   std::uint64_t bytes = 0;
   for (const SourceVolume& volume : source.volumes) {
@@ -74,7 +74,7 @@ void check_memory(const ServerFlags& o, const kinds::Source& source) {
          o.play, wanted, o.max_memory, wanted);
 }
 
-/// All that takes long before there is a server.
+/// Everything slow to load before there is a server.
 struct Loaded {
   kinds::Source source;
   std::unique_ptr<Views> views;
@@ -90,7 +90,7 @@ Loaded load(const ServerFlags& o) {
   return loaded;
 }
 
-/// Of another kind's texture: all those of which some bits may be off.
+/// The error bound for a texture of a kind other than probes.
 float max_error(const ServerFlags& o, const TextureGroup& group, const NamedTexture& texture) {
   const bool first = &texture == &group.textures.front();
   const bool exact = texture.threshold == Threshold::exact || (first && group.presence == 0);
@@ -99,7 +99,7 @@ float max_error(const ServerFlags& o, const TextureGroup& group, const NamedText
   return 0;
 }
 
-/// Colour and visibility of probes at their own rates and thresholds.
+/// The options of all textures; colour and visibility of probes have their own.
 std::vector<std::vector<StreamedTexture>> streamed(const ServerFlags& o,
                                                    const kinds::Source& source) {
   std::vector<std::vector<StreamedTexture>> all;
@@ -116,7 +116,7 @@ std::vector<std::vector<StreamedTexture>> streamed(const ServerFlags& o,
           names.push_back(texture.name);
           continue;
         }
-        // What travels together, or names what does, has one interval.
+        // Bundled textures, and groups that depend on one another, have one interval.
         const bool apart = !group.bundled && volume.desc.groups.size() == 1;
         textures.push_back({texture.name,
                             color || !apart ? o.color_interval : o.visibility_interval,
@@ -142,7 +142,7 @@ std::vector<std::vector<StreamedTexture>> streamed(const ServerFlags& o,
   return all;
 }
 
-/// Reports take the place of earlier ones, so none may be named twice or be an input.
+/// Reports replace earlier files, so none may be named twice or be an input.
 void check_reports(const ServerFlags& o) {
   tools::InputFiles inputs(
       {o.token.file, o.play, o.users, o.web.certificate, o.web.key, o.metrics_token_file});
@@ -166,13 +166,13 @@ constexpr const char* kExitCodes =
     "     cannot be listened to or reached\n"
     "  5  an internal error, or memory ran out";
 
-/// The summary of a server that was interrupted before its first update.
+/// Prints the summary of a server that was interrupted before its first update.
 void summarise_nothing(const ServerFlags& o) {
   auto server = tools::take(Server::create(), "server");
   ServerStatistics(o.service.statistics, {}).finish(server, now());
 }
 
-/// Where to listen, and with what; refuses what would not be protected as one may expect.
+/// Reads the addresses to listen at. Refuses those without the protection a user would expect.
 void take_addresses(ServerFlags& o) {
   if (o.listen_web.empty()) {
     if (!o.web.certificate.empty() || !o.web.key.empty() || o.insecure_web ||
@@ -233,7 +233,7 @@ Exit run(ServerFlags& o) {
   o.server.access.authorise = [access](ConnectionId connection, std::string_view said) {
     return access->judge(connection, said, now());
   };
-  // Whoever says nothing takes no place of those who have a session.
+  // Connections without a Hello take no places of sessions.
   constexpr std::uint32_t kWaiting = 48;
   o.server.limits.max_waiting = kWaiting;
   o.server.interval = 1 / o.service.rate;
@@ -248,7 +248,7 @@ Exit run(ServerFlags& o) {
          kMaxGridSide, o.region);
   o.server.region = *region;
   o.server.limits.max_clients = o.max_clients;
-  // Beyond the server's own limit there is room to tell others that the server is full.
+  // More than the server's limit, so that it can tell further clients that it is full.
   o.service.net.links = std::min<std::size_t>(4095, o.server.limits.max_connections + 16);
   o.service.net.links_per_address = o.per_address;
   o.service.net.max_received = static_cast<std::size_t>(o.server.limits.max_message_bytes) + 1;
@@ -268,7 +268,7 @@ Exit run(ServerFlags& o) {
   o.server.scene = source.scene;
   const auto textures = streamed(o, source);
   for (const SourceVolume& volume : source.volumes) check_backend(o, volume);
-  // For each update that a client has it and where it looks then, and other things besides.
+  // Per update an Acknowledge and a Viewpoint, and some more.
   o.server.limits.messages_per_second =
       o.max_messages.value_or(std::max(200.0, 100 + 2 * o.service.rate));
   auto server = tools::take(Server::create(o.server), "backend " + o.backend);
@@ -313,7 +313,7 @@ int main(int argc, char** argv) {
     if (!options.play.empty() && !options.kind.set.empty())
       fail(Exit::usage, "--set is for scenes that are traced");
     kinds::refuse_flags_of_probes(app, options.kind, kOfProbes);
-    // Clients do not wait for what nobody sees.
+    // Clients do not wait for a warm-up that nobody sees.
     auto& warmup = options.kind.own.at("warmup");
     if (warmup.empty()) warmup = {"0"};
     kinds::refuse_flags_of_culled(app, options.kind, kOfCulled);

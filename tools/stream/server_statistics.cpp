@@ -37,12 +37,12 @@ File open(const std::string& path, bool (*is_report)(std::string_view)) {
   File file(path.empty() ? nullptr : std::fopen(path.c_str(), "w"), std::fclose);
   if (!path.empty() && !file)
     tools::fail(tools::Exit::io, "{}: cannot be opened: {}", path, std::strerror(errno));
-  // Who is killed leaves whole lines.
+  // A killed server leaves complete lines.
   if (file) static_cast<void>(std::setvbuf(file.get(), nullptr, _IOLBF, BUFSIZ));
   return file;
 }
 
-/// Never fails: an error stays noted in the file, for check_written().
+/// Never fails: check_written() finds the file's error flag.
 void put(std::FILE* file, const std::string& text) noexcept {
   std::fwrite(text.data(), 1, text.size(), file);
 }
@@ -58,7 +58,7 @@ void check_written(std::FILE* file, const std::string& path) {
 }
 
 double rounded(double value) { return std::round(value * 1000) / 1000; }
-/// 0 where too little time has passed for a rate.
+/// 0 if too little time has passed for a rate.
 double per_second(double count, double seconds) { return seconds > 1e-6 ? count / seconds : 0; }
 double mbps(std::uint64_t bytes, double seconds) {
   return per_second(static_cast<double>(bytes) * 8e-6, seconds);

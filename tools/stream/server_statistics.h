@@ -1,4 +1,4 @@
-// What a server measures: JSON lines while it runs, a table at the end, a CSV line per client and
+// Statistics of a server: JSON lines while it runs, a table at the end, a CSV line per client and
 // update.
 #pragma once
 
@@ -45,28 +45,28 @@ class ServerStatistics {
   struct Update {
     std::uint64_t number = 0;
     double time = 0;            ///< of the scene
-    double trace_seconds = -1;  ///< negative: nothing new is shown
+    double trace_seconds = -1;  ///< negative: there is no new frame
     double encode_seconds = 0;
     std::size_t active = 0;  ///< blocks of the first volume
     double now = 0;
   };
-  /// After each update, before its messages are taken.
+  /// Call this after each update, before taking its messages.
   void updated(Server& server, const Update& update);
   void viewed(double seconds) { views_.add(seconds), all_views_.add(seconds); }
   void late() { ++late_; }
   struct Totals {
     std::uint64_t late = 0, bytes = 0, blocks = 0;
     Durations encode, latency;
-    std::vector<float> latencies;  ///< the last ones, seconds
+    std::vector<float> latencies;  ///< most recent ones, seconds
   };
   [[nodiscard]] Totals totals(Server& server);
   /// Writes a line if a second has passed since the last one.
   void tick(Server& server, double now);
-  /// The last lines and the table.
+  /// Writes the last lines and the table.
   void finish(Server& server, double now);
-  /// The first file that lacks something, as a sentence; once, else nothing.
+  /// A sentence on the first file that could not be written completely; once, then empty.
   [[nodiscard]] std::string trouble();
-  /// Throws tools::Error of Exit::io if a file lacks something. Until then nothing does.
+  /// Throws tools::Error of Exit::io if a file could not be written completely.
   void check_written() const;
 
  private:

@@ -22,7 +22,7 @@ constexpr double kPoll = 1e-3;
 constexpr double kLogBurst = 500, kLogRate = 10;  ///< lines, and lines per second
 constexpr std::uintptr_t kNoConnection = 0;
 
-/// The flags that let more in.
+/// The flags that raise the limit of this reason.
 const char* limits_of(Reason reason) {
   switch (reason) {
     case Reason::full:
@@ -75,7 +75,7 @@ Service::Service(const ServiceOptions& options, Server server, std::shared_ptr<A
   }
 }
 
-/// Traces the first frame, before clients may come.
+/// Traces the first frame, before clients may connect.
 void Service::begin() {
   request_frame();
   while (!fresh_) {
@@ -113,21 +113,21 @@ void Service::begin() {
 
 void Service::update() {
   const auto begin = now();
-  // Who could not be served gets what changed later, or was dropped; nobody else is to suffer.
+  // An error concerns single clients, which were dropped or have blocks pending: go on.
   updater_.submit(begin);
   const Status status = update_and_listen();
   if (status != Status::ok) log("update {} is not complete: {}", made_ + 1, to_string(status));
   ++made_;
   const double seconds = now() - begin;
-  // Frames that keep order have the time that they need.
+  // In lockstep frames may take any time.
   if (!options_.lockstep) server_.report_update_time(seconds, 1 / options_.rate);
   statistics_.updated(server_,
                       {made_, time_, fresh_ ? trace_seconds_ : -1, seconds, active_, begin});
   fresh_ = false;
 }
 
-/// Takes what arrives while an update is made off the network, so that nothing is lost there. The
-/// server hears of it afterwards.
+/// Reads the network while an update is made, so that nothing is lost there. The server gets the
+/// messages afterwards.
 Status Service::update_and_listen() {
   constexpr std::size_t kMaxBytes = 16 << 20;
   std::vector<NetEvent> arrived;
@@ -139,12 +139,11 @@ Status Service::update_and_listen() {
       if (!net_.next(event, 1)) continue;
       bytes += sizeof event + event.message.size();
       arrived.push_back(std::move(event));
-      // Its link is not to be used for another one before that is known.
+      // The link must not be reused before the server knows.
       if (arrived.back().type == NetEvent::Type::closed) break;
     }
   } catch (...) {
-    if (!updater_.idle())
-      static_cast<void>(updater_.wait());  // Who ends the server needs the server.
+    if (!updater_.idle()) static_cast<void>(updater_.wait());  // The shutdown uses the server.
     throw;
   }
   if (!status) status = updater_.wait();
@@ -248,8 +247,8 @@ void Service::take(const ServerEvent& event) {
   }
 }
 
-/// How long the session behind a connection has lasted, and what it was sent. The connection ends,
-/// and if `ends` the session with it.
+/// The duration and traffic of a connection's session, for the log. Call it when the connection
+/// ends; `ends`: the session does too.
 std::string Service::account(ConnectionId id, bool ends) {
   const auto statistics = server_.statistics(id);
   const auto it = statistics ? sessions_.find(statistics->client) : sessions_.end();
@@ -264,7 +263,7 @@ std::string Service::account(ConnectionId id, bool ends) {
   return text;
 }
 
-/// Returns the bytes.
+/// Sends a connection's messages; returns their bytes.
 std::size_t Service::send(ConnectionId id) {
   const auto it = connections_.find(id);
   if (it == connections_.end()) return 0;
@@ -276,8 +275,8 @@ std::size_t Service::send(ConnectionId id) {
   return bytes;
 }
 
-/// Takes what arrives off the network in between: what all are sent brings as many answers. Nobody
-/// is always the last one.
+/// Sends all messages, and reads the network in between, because every client answers. Begins with
+/// another client each time.
 void Service::send_all() {
   constexpr std::size_t kAtOnce = 512 << 10;
   std::vector<ConnectionId> ids;
@@ -319,7 +318,7 @@ void Service::run() {
   } catch (const ddgi::Cancelled&) {
     // Interrupted while tracing.
   } catch (...) {
-    say_goodbye();  // A frame could not be made: clients are not to wait for it.
+    say_goodbye();  // There is no frame: clients must not wait for it.
     throw;
   }
   say_goodbye();
@@ -331,10 +330,10 @@ void Service::serve() {
   double due = now(), finished = -1;
   NetEvent event;
   while (!tools::interrupted()) {
-    // Late only because a frame is not ready: looks for it now and then.
+    // If only the frame is missing, polls for it.
     const double left = std::max(due - now(), may_update() ? 0 : kPoll);
     const auto wait = static_cast<unsigned>(std::clamp(std::ceil(left * 1e3), 0.0, 5.0));
-    // What has arrived is taken before the next update, but not for ever.
+    // Takes events before the next update, for a limited time.
     for (bool more = net_.next(event, wait); more; more = net_.next(event, 0)) {
       handle(event);
       if (now() >= due + period) break;

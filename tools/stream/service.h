@@ -1,4 +1,4 @@
-// A running server: connections, updates at their rate, culling, statistics, and the end of it.
+// A running server: connections, updates at their rate, culling, statistics, shutdown.
 #pragma once
 
 #include "access.h"
@@ -31,30 +31,30 @@ struct ServiceOptions {
   double start = 0;           ///< the scene's time at the first update
   std::uint64_t updates = 0;  ///< to make; 0: until interrupted
   std::uint32_t wait = 0;     ///< clients to wait for before the first update
-  bool lockstep = false;      ///< each update shows the next frame, however long it takes
+  bool lockstep = false;      ///< each update has the next frame and waits for it
   bool quiet = false;
   ServerStatistics::Output statistics;
 };
 
 class Service {
  public:
-  /// Adds the source's volumes to the server, which asks `access`. Without `views` clients see
-  /// everything that they do not choose themselves.
+  /// Adds the source's volumes to the server. `access`: that of the server. Without `views` clients
+  /// see everything, unless they subscribe.
   Service(const ServiceOptions& options, Server server, std::shared_ptr<Access> access,
           const Source& source, std::unique_ptr<Views> views,
           const std::vector<std::vector<StreamedTexture>>& textures);
 
-  /// Returns when all updates are made and taken, or after an interrupt.
+  /// Returns once all updates are made and acknowledged, or after an interrupt.
   void run();
 
  private:
   struct Connection {
     Link link;
     std::string address, user;
-    bool chooses = false;  ///< its probes itself
+    bool chooses = false;  ///< the client has subscribed
     bool closing = false;
   };
-  /// What a client was sent over connections that it has lost, and since when it is there.
+  /// When a session began, and what its lost connections carried.
   struct Session {
     double began = 0;
     std::uint64_t bytes = 0, updates = 0;
@@ -98,17 +98,18 @@ class Service {
   Server server_;
   std::shared_ptr<Access> access_;
   std::vector<SourceVolume> volumes_;
-  std::vector<std::string> remarks_;  ///< on the source
+  std::vector<std::string> remarks_;  ///< of the source
   bool played_ = false;
   std::unique_ptr<Views> views_;
   std::vector<ViewedVolume> viewed_;  ///< of every volume
   Net net_;
-  std::optional<Control> control_;  // Before the reports: they are emptied where it may be made.
+  std::optional<Control>
+      control_;  // Before statistics_, which empties its files: the socket may fail.
   ServerStatistics statistics_;
   std::map<ConnectionId, Connection> connections_;
   std::map<ClientId, Session> sessions_;
   std::map<Reason, std::uint64_t> dropped_;
-  double shown_ = 0;  ///< when the metrics were
+  double shown_ = 0;  ///< when the metrics were last shown
   LogLimit log_limit_;
 
   std::uint64_t made_ = 0;       ///< updates
@@ -116,11 +117,11 @@ class Service {
   bool fresh_ = false;           ///< a frame was published since the last update
   double time_ = 0;              ///< of the scene, as published
   double trace_seconds_ = -1;
-  unsigned slow_frames_ = 0;  ///< that took longer than an update, one after the other
+  unsigned slow_frames_ = 0;  ///< consecutive ones that took longer than an update
   std::size_t active_ = 0;
 
   Background<SourceRequest, SourceFrame> tracer_;
-  Background<double, Status> updater_;  ///< who has the server while it works
+  Background<double, Status> updater_;  ///< uses the server while it works
   std::optional<Background<ViewRequest, ViewResult>> viewer_;
 };
 

@@ -1,4 +1,4 @@
-// What a service shows: frames of its source, and what clients see of them.
+// The frames of a service's source, and which blocks clients see.
 #include "service.h"
 
 #include "dump/dump.h"
@@ -23,7 +23,7 @@ void Service::publish(const SourceFrame& frame) {
     }
     for (std::uint8_t t = 0; t < volume.textures.size(); ++t) {
       const Status status = server_.publish(v, t, ConstTextureView{volume.textures[t]});
-      // What clients hold stays as it is until there is memory again.
+      // Clients keep what they hold until there is memory.
       if (status == Status::out_of_memory) {
         log("texture {}: {}", textures[t].name, to_string(status));
         continue;
@@ -41,9 +41,9 @@ void Service::publish(const SourceFrame& frame) {
   if (!played_ && !options_.lockstep) tell_pace();
 }
 
-/// Once, if frames keep taking longer than updates.
+/// Warns once if frames keep taking longer than updates.
 void Service::tell_pace() {
-  constexpr unsigned kFrames = 3;  // Of the first one much is traced once.
+  constexpr unsigned kFrames = 3;  // The first frame traces much that later ones reuse.
   const double period = 1 / options_.rate;
   const bool told = slow_frames_ == kFrames;
   if (told) return;
@@ -54,7 +54,7 @@ void Service::tell_pace() {
       trace_seconds_, period, std::min(options_.rate, 0.8 / trace_seconds_));
 }
 
-/// A live source is asked for what is shown next; one that keeps order for its next frame.
+/// Requests the frame for the next update from a live source, the next in order from others.
 void Service::request_frame() {
   if (!tracer_.idle()) return;
   if (options_.updates > 0 && requested_ >= options_.updates && (played_ || options_.lockstep))
@@ -82,7 +82,7 @@ void Service::request_views() {
 }
 
 void Service::take_background() {
-  // A frame that an update has not shown yet is not to be skipped where frames keep their order.
+  // Where frames have an order, a frame must be in an update before the next replaces it.
   if (!fresh_ || !(played_ || options_.lockstep)) {
     if (const auto frame = tracer_.take()) publish(*frame);
   }
@@ -95,7 +95,7 @@ void Service::take_background() {
     if (it == connections_.end() || it->second.chooses || !server_.client(seen.connection))
       continue;
     for (std::uint16_t v = 0; v < seen.volumes.size(); ++v) {
-      // Of others all is seen.
+      // Clients see all blocks of other volumes.
       const auto& groups = volumes_[v].desc.groups;
       const bool culled = kinds::is_culled(volumes_[v]);
       if (culled) set_visible(seen.connection, v, seen.volumes[v], 0);
@@ -107,7 +107,7 @@ void Service::take_background() {
   }
 }
 
-/// Until it is known what it sees.
+/// Hides everything from a client until its view is known.
 void Service::show_nothing(ConnectionId id) {
   for (std::uint16_t v = 0; v < volumes_.size(); ++v) {
     for (std::uint8_t group = 0; group < volumes_[v].desc.groups.size(); ++group)
@@ -115,7 +115,7 @@ void Service::show_nothing(ConnectionId id) {
   }
 }
 
-/// One who is gone, or for whom there is no memory, is no reason to stop.
+/// Ignores clients that are gone or for which there is no memory.
 void Service::set_visible(ConnectionId id, std::uint16_t volume,
                           std::span<const std::uint8_t> blocks, std::uint8_t group) {
   const Status status = server_.set_visible(id, volume, blocks, group);

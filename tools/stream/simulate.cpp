@@ -14,7 +14,7 @@
 namespace gicodec::streaming {
 namespace {
 
-constexpr double kSpread = 16;  ///< seconds of the camera's path that are shared out
+constexpr double kSpread = 16;  ///< seconds of the camera's path over which clients are spread
 constexpr double kAgain = 0.5;  ///< seconds before a lost client connects again
 constexpr std::chrono::milliseconds kIdle{1};
 constexpr double kGoodbye = 0.7;        ///< seconds for the last messages to arrive
@@ -45,8 +45,8 @@ class LoadTest {
  public:
   LoadTest(const SimulateOptions& options, const CameraPath& path)
       : options_(options), path_(path) {
-    // An ENet socket for each: with one for all, the kernel's buffer would be shared too, which is
-    // not so between machines.
+    // One ENet socket per client: otherwise they would share the kernel's buffer, which clients on
+    // different machines do not.
     const bool enet = options.server.via == Via::enet;
     NetOptions net = options.net;
     if (!enet) net.links = options.clients;
@@ -85,7 +85,7 @@ class LoadTest {
   }
 
  private:
-  /// What has arrived for all, of each for a turn; false if nothing has.
+  /// Handles the events of all clients, each for a turn; false if there are none.
   bool look_around() {
     constexpr double kTurn = 0.005, kInattentive = 0.1;  // seconds
     NetEvent event;
@@ -165,7 +165,7 @@ class LoadTest {
   }
 
   void look(Simulated& c, double time) {
-    // Without memory the server goes by the last one.
+    // Without memory the server keeps the last viewpoint.
     static_cast<void>(
         c.client.set_viewpoint(viewpoint(path_.at(time + c.offset), 16.0F / 9, time)));
     send(c);
@@ -224,7 +224,7 @@ class LoadTest {
   const CameraPath& path_;
   std::deque<Net> nets_;
   std::deque<Simulated> clients_;
-  std::string why_;  ///< the last connection ended, as far as that is known
+  std::string why_;  ///< why the last connection ended, if known
   SimulateResult result_;
   double first_ = -1, last_ = -1, attended_ = 0;
 };

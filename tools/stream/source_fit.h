@@ -1,4 +1,4 @@
-// What a server's flags have to be for what it shows.
+// Checks a server's flags against its source.
 #pragma once
 
 #include "server_flags.h"
@@ -6,7 +6,7 @@
 
 namespace gicodec::streaming {
 
-/// Throws Error that names the cure where the backend refuses its flags, or a texture.
+/// Throws tools::Error with a remedy if the backend refuses its flags, or a texture.
 void check_backend(const ServerFlags& flags, const SourceVolume& volume);
 
 }  // namespace gicodec::streaming

@@ -119,7 +119,7 @@ TcpState tcp_state(int descriptor) {
       ioctl(descriptor, SIOCINQ, &waiting) != 0) {
     return {};
   }
-  // What waits was looked at later, and may be more.
+  // The unread bytes are read later than the total and may be more.
   const std::uint64_t unread =
       std::min<std::uint64_t>(info.tcpi_bytes_received, static_cast<unsigned>(waiting));
   return {info.tcpi_bytes_received - unread, info.tcpi_bytes_acked,

@@ -1,4 +1,4 @@
-// TCP sockets as web.cpp needs them.
+// TCP sockets for web.cpp.
 #pragma once
 
 #include "transport.h"
@@ -8,31 +8,31 @@
 
 namespace gicodec::streaming {
 
-/// A socket that waits for connections and never blocks; IPv6 where the address is, and with "::"
-/// IPv4 too. Throws tools::Error of Exit::io.
+/// A non-blocking socket that listens at an address, IPv4 or IPv6; "::" listens for both. Throws
+/// tools::Error of Exit::io.
 [[nodiscard]] int listen_tcp(const Address& address);
 [[nodiscard]] std::uint16_t port_of(int descriptor);
 
 /// The other end of a connection.
 struct TcpPeer {
   std::string address;  ///< "127.0.0.1:51022", "[2001:db8::1]:51022"
-  /// What one stranger has at least one of: an IPv4 address, or a network of 64 bits of IPv6.
+  /// The origin: an IPv4 address, or an IPv6 network of 64 bits.
   std::string host;
   bool loopback = false;
 };
-/// A connection that waits to be taken and its other end; -1 if there is none. Without memory for
-/// the latter it is closed, and std::bad_alloc thrown.
+/// Accepts a waiting connection, and sets its peer; -1 if there is none. Without memory for `peer`
+/// it closes the connection and throws std::bad_alloc.
 [[nodiscard]] int accept_tcp(int descriptor, TcpPeer& peer);
 
-/// What the system knows of a connection.
+/// The system's counters of a connection.
 struct TcpState {
-  std::uint64_t read = 0;   ///< bytes taken from the socket so far, whatever they were
-  std::uint64_t taken = 0;  ///< bytes that the other end has confirmed
+  std::uint64_t read = 0;   ///< bytes read from the socket so far
+  std::uint64_t taken = 0;  ///< bytes that the peer has confirmed
   unsigned round_trip_ms = 0;
 };
 [[nodiscard]] TcpState tcp_state(int descriptor);
 
-/// Lets the process open so many files at least; throws tools::Error of Exit::io if it may not.
+/// Lets the process open at least `count` files. Throws tools::Error of Exit::io.
 void allow_files(std::size_t count);
 
 }  // namespace gicodec::streaming

@@ -21,7 +21,7 @@ using tools::fail;
 
 constexpr std::size_t kDigest = 32;
 
-/// The reason of the first error that OpenSSL notes; the others are forgotten.
+/// The reason of OpenSSL's first error; clears the others.
 std::string last_error() {
   const unsigned long code = ERR_get_error();
   ERR_clear_error();
@@ -44,7 +44,7 @@ std::string digest_of(X509* certificate) {
   return {reinterpret_cast<const char*>(digest.data()), digest.size()};
 }
 
-/// Errors that say nothing but that no authority vouches for the certificate.
+/// True for errors that only mean that no authority vouches for the certificate.
 bool lacks_authority(int error) {
   switch (error) {
     case X509_V_ERR_UNABLE_TO_GET_ISSUER_CERT:
@@ -117,7 +117,7 @@ std::string parse_pin(const std::string& text) {
   constexpr std::string_view kKind = "sha256:";
   std::string digits;
   for (const char c : text.starts_with(kKind) ? text.substr(kKind.size()) : std::string()) {
-    if (c != ':') digits += c;  // As openssl x509 -fingerprint writes it.
+    if (c != ':') digits += c;  // openssl x509 -fingerprint writes colons.
   }
   const auto pin = from_hex(tools::lower_case(digits));
   if (pin && pin->size() == kDigest) return *pin;

@@ -14,10 +14,10 @@ struct TokenFlags {
 void add_token_flags(tools::Command& app, TokenFlags& flags);
 
 struct Token {
-  std::string text;    ///< without the line's end where it is read from a file
-  std::string remark;  ///< what is wrong with that file; empty for nothing
+  std::string text;    ///< without the end of the line, if read from a file
+  std::string remark;  ///< a fault of that file; empty: none
 };
-/// Throws tools::Error; messages never show the token.
+/// Throws tools::Error. Its messages never show the token.
 [[nodiscard]] Token read_token(const TokenFlags& flags);
 
 }  // namespace gicodec::streaming

@@ -19,8 +19,8 @@ using tools::Exit;
 using tools::fail;
 
 constexpr const char* kHash = "pbkdf2-sha256";
-/// Tokens are 256 random bits, which nobody guesses however fast the hash is; this keeps the one
-/// who reads the file from trying tokens that a person made up.
+/// Rounds of hashing. Tokens of 256 random bits cannot be guessed anyway; the rounds protect tokens
+/// that people chose from a reader of the file.
 constexpr unsigned kRounds = 4096, kMaxRounds = 1'000'000;
 constexpr std::size_t kSecret = 32, kSalt = 16, kMaxName = 64;  // bytes
 constexpr std::size_t kMaxFile = std::size_t{4} << 20;          // bytes
@@ -32,7 +32,7 @@ bool is_name(std::string_view name) {
   return !name.empty() && name.size() <= kMaxName && name.find_first_not_of(kLetters) == name.npos;
 }
 
-/// What is between colons; the last one takes the rest.
+/// The fields between colons; the last field is the rest.
 std::array<std::string_view, 5> fields_of(std::string_view line) {
   std::array<std::string_view, 5> fields{};
   for (std::size_t i = 0; i < fields.size(); ++i) {
@@ -122,7 +122,7 @@ std::string add_user(const std::string& path, const std::string& name) {
   File file{open(path.c_str(), kFlags | O_CREAT | O_EXCL, S_IRUSR | S_IWUSR)};
   const bool made = file.descriptor >= 0;
   if (!made) file.descriptor = open(path.c_str(), kFlags);
-  // One after the other, so that no name is added twice.
+  // The lock keeps two programs from adding a name twice.
   if (file.descriptor < 0 || flock(file.descriptor, LOCK_EX) != 0)
     fail(Exit::io, "{}: cannot be written: {}", path, std::strerror(errno));
   const std::string text = read_all(file.descriptor, path);
@@ -136,7 +136,7 @@ std::string add_user(const std::string& path, const std::string& name) {
   if (::write(file.descriptor, line.data(), line.size()) != static_cast<ssize_t>(line.size()) ||
       fsync(file.descriptor) != 0) {
     const int error = errno;
-    // As it was: half a line is no user.
+    // Restores the file, so that no partial line stays.
     const bool restored = made ? unlink(path.c_str()) == 0
                                : ftruncate(file.descriptor, static_cast<off_t>(text.size())) == 0;
     fail(Exit::io, "{}: cannot be written: {}{}", path, std::strerror(error),

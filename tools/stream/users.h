@@ -1,4 +1,4 @@
-// Who may connect: a file with a line for each user, its name and the hash of its token.
+// Users that may connect: a file with a line per user, with name and hash of the token.
 #pragma once
 
 #include <map>
@@ -17,10 +17,10 @@ using Users = std::map<std::string, User, std::less<>>;
 /// Throws tools::Error that names the line.
 [[nodiscard]] Users read_users(const std::string& path);
 
-/// The user whose token this is; empty for nobody's. Takes as long for those who are not there.
+/// The user of this token; empty if there is none. Takes the same time in both cases.
 [[nodiscard]] std::string user_of(const Users& users, std::string_view token);
 
-/// Adds a line, in a new file if there is none, and returns the token, which is kept nowhere.
+/// Adds a line to the file, which it creates if needed. Returns the token, which is stored nowhere.
 /// Throws tools::Error.
 [[nodiscard]] std::string add_user(const std::string& path, const std::string& name);
 

@@ -18,10 +18,10 @@
 namespace gicodec::streaming {
 namespace {
 
-constexpr double kSettle = 5;   ///< seconds for what has arrived to be decoded
+constexpr double kSettle = 5;   ///< seconds to decode what has arrived
 constexpr double kHaste = 0.2;  ///< the same after an interrupt
 
-/// "color of villa: off by at most 2", for what is not bit by bit.
+/// "color of villa: off by at most 2", for each texture that is not lossless.
 std::vector<std::string> lossy_textures(const ClientFrame& frame) {
   std::vector<std::string> lossy;
   for (const ClientVolume& volume : frame.volumes) {
@@ -48,7 +48,7 @@ class Viewer {
     if (path_.known()) look(0);
     while (!tools::interrupted()) {
       const double at = now();
-      // Asked first: what came before the end is still taken.
+      // Reads the state first: updates that came before the end still count.
       const bool ended =
           link_.state() == ClientLink::State::ended || link_.state() == ClientLink::State::failed;
       const ClientFrame& frame = client_.latest();
@@ -76,8 +76,8 @@ class Viewer {
     return frame.serial >= options_.updates && result_.frames >= options_.frames;
   }
 
-  /// Without probes a picture would be black, without their visibility it would be wrong; of other
-  /// kinds anything is enough, since not all of their textures have to hold something.
+  /// True if a picture can be drawn. Probes need irradiance and visibility; of other kinds one
+  /// texture with contents suffices.
   [[nodiscard]] static bool holds_light(const ClientFrame& frame) {
     if (frame.volumes.empty()) return false;
     const ClientVolume& first = frame.volumes.front();

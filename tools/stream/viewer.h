@@ -15,7 +15,7 @@
 
 namespace gicodec::streaming {
 
-/// Probes of the world volume that are asked for by their place in the grid.
+/// A box of probes of the world volume to subscribe to, by their places in the grid.
 struct Box3 {
   std::array<std::uint32_t, 3> first{}, last{};
 };
@@ -23,34 +23,34 @@ struct Box3 {
 struct ViewerOptions {
   LinkOptions link;
   ClientOptions client;
-  std::uint64_t updates = 0;  ///< after which it leaves; 0: no limit
-  double seconds = 0;         ///< likewise
+  std::uint64_t updates = 0;  ///< updates until it leaves; 0: no limit
+  double seconds = 0;         ///< seconds until it leaves; 0: no limit
   std::uint32_t frames = 0;   ///< pictures to draw
   double fps = 10;            ///< of the pictures
   float aspect = 16.0F / 9;
-  std::optional<SceneId> scene;  ///< that the server has to stream
+  std::optional<SceneId> scene;  ///< that the server must stream
   bool subscribe_all = false;
   std::optional<Box3> subscribe;
-  bool status = false;  ///< a line on a terminal
+  bool status = false;  ///< show a status line on a terminal
 };
 
 struct ViewerResult {
   ClientLink::State state{};
   std::string message;
-  bool unusable = false;  ///< what the server sent, for this client
+  bool unusable = false;  ///< this client could not use the server's messages
   ClientStatistics statistics;
   std::uint64_t updates = 0;
-  std::uint64_t blocks = 0, held = 0;  ///< of all textures, and those of them that it has received
+  std::uint64_t blocks = 0, held = 0;  ///< of all textures, and those received
   unsigned connections = 0, round_trip_ms = 0;
-  bool resumed = false;            ///< the session outlived all lost connections
-  std::vector<std::string> lossy;  ///< textures that may be off, and by how much
+  bool resumed = false;            ///< the session continued after every lost connection
+  std::vector<std::string> lossy;  ///< textures with errors, and their bounds
   std::uint32_t frames = 0;
   double seconds = 0;         ///< from the first update to the last
   double all_seconds = 0;     ///< from the first attempt to connect to the end
   double render_seconds = 0;  ///< of all frames
 };
 
-/// `renderer` may be nullptr if no frames are asked for. Throws tools::Error.
+/// `renderer` may be nullptr if options.frames is 0. Throws tools::Error.
 [[nodiscard]] ViewerResult watch(const ViewerOptions& options, const CameraPath& path,
                                  Renderer* renderer);
 

@@ -14,14 +14,14 @@ namespace {
 using ddgi::vec;
 using ddgi::Vec3;
 
-/// Looks a little past the picture's edges: heads turn between two updates.
+/// Looks a little beyond the picture's edges, since cameras turn between updates.
 constexpr float kWider = 1.2F;
 
 struct Frame {
   Vec3 forward, right, up;
 };
 
-/// Of any numbers: comparisons are such that those of NaN choose what needs none of them.
+/// Safe for any numbers: comparisons with NaN choose the branch that does not use them.
 Frame frame_of(const Viewpoint& view) {
   Vec3 forward = ddgi::direction_between(vec(view.eye), vec(view.target));
   if (!(length(forward) > 0)) forward = {0, 0, -1};
@@ -57,7 +57,7 @@ void add_with_margin(const VolumeGeometry& g, const Position& point, int margin,
   add_shading_probes(g, around, mask);
 }
 
-/// Of bricks, what a picture of that many rows wants.
+/// The bricks that the picture needs.
 BlockMask cut(const ViewedVolume& volume, const Viewpoint& view, std::span<const Position> points) {
   constexpr float kRows = 720;
   const float tangent = std::tan(std::clamp(view.fov_y, 1.0F, 150.0F) * (ddgi::kPi / 360));
@@ -116,7 +116,7 @@ ViewResult Views::look(const ViewRequest& request) {
       }
       BlockMask mask(std::size_t{g.grid.x} * g.grid.y * g.grid.z);
       for (const Position& point : points) {
-        // What lies beyond a further volume is shaded by the first one.
+        // Points outside of a further volume are shaded by the first volume.
         if (v == 0 || near(g, point)) add_with_margin(g, point, margin_, mask);
       }
       seen.volumes.push_back(std::move(mask));

@@ -1,6 +1,6 @@
-// Which blocks clients need for what they look at: probes that shade what rays through the view
-// meet, and some around them (Stengel et al. §3.4, client view probe culling); of voxels a cut
-// through the octree (Crassin et al. §4.1).
+// Views: the blocks that a client needs for its viewpoint. Probes that shade the points which rays
+// through the view hit, and some around them (Stengel et al. §3.4, client view probe culling); of
+// voxels a cut through the octree (Crassin et al. §4.1).
 #pragma once
 
 #include "ddgi/ray_scene.h"
@@ -17,7 +17,7 @@ namespace gicodec::streaming {
 struct ViewedVolume {
   VolumeGeometry geometry;
   std::uint8_t brick_side = 0;  ///< of voxels; 0: probes
-  /// Of voxels, where bricks stand: the texture "bricks".
+  /// Of voxels: the texture "bricks", which says where bricks stand.
   std::shared_ptr<const std::vector<std::byte>> bricks = nullptr;
   voxels::ChangedSlots changed{};
 };
@@ -40,8 +40,8 @@ struct ViewResult {
 /// One thread at a time.
 class Views {
  public:
-  /// About `samples` rays are spent on each viewpoint; probes up to `margin` cells beyond those
-  /// that shade what they meet are needed as well.
+  /// Uses about `samples` rays per viewpoint. Adds probes up to `margin` cells around those that
+  /// shade the points hit.
   Views(ddgi::Scene scene, std::uint32_t samples, std::uint32_t margin);
   [[nodiscard]] ViewResult look(const ViewRequest& request);
 

@@ -86,7 +86,7 @@ bool Web::send(WebLink* link, const OutgoingMessage& message) {
   const std::lock_guard lock(state_->mutex);
   if (link->gone || link->closing) return false;
   if (link->unsent_bytes >= state_->options.max_unsent) {
-    // Nothing of what waits needs to go before the reason, but what has begun to.
+    // Drops queued messages before the reason, except one that is being sent.
     while (link->unsent.size() > 1) {
       link->unsent_bytes -= link->unsent.back().bytes.size() - kFrameRoom;
       link->unsent.pop_back();

@@ -1,5 +1,5 @@
-// WebSockets as the programs use them, one binary message for each of the protocol's, over TLS 1.3
-// or, on one machine, in clear.
+// WebSockets: one binary message per message of the protocol, over TLS 1.3 or, on one machine, in
+// clear.
 #pragma once
 
 #include "tls.h"
@@ -10,11 +10,11 @@
 
 namespace gicodec::streaming {
 
-/// Connections, served by a thread of its own. Everything here on one other thread; throws
+/// Connections, served by a thread of their own. All calls come from one other thread, and throw
 /// tools::Error of Exit::io.
 class Web {
  public:
-  /// Waits for connections there. `certificate`: nullptr without encryption.
+  /// Listens for connections. `certificate`: nullptr without encryption.
   Web(const WebListen& listen, TlsContext certificate, const NetOptions& options);
   /// Only connects.
   explicit Web(const NetOptions& options);
@@ -24,13 +24,13 @@ class Web {
 
   /// Begins to connect; `opened` or `closed` follows.
   [[nodiscard]] WebLink* connect(const Address& address);
-  /// What has happened, oldest first; false if nothing has. Never waits.
+  /// Takes the oldest event; false if there is none. Never waits.
   [[nodiscard]] bool next(NetEvent& event);
-  /// Readable while something has happened.
+  /// Readable while there are events.
   [[nodiscard]] int descriptor() const;
-  /// False if the link is not open any more. More than waits on a link at most breaks it.
+  /// False if the link is not open any more. Breaks a link beyond NetOptions::max_unsent.
   bool send(WebLink* link, const OutgoingMessage& message);
-  /// Closes when all that was sent has left, or after a while; `closed` follows.
+  /// Closes the link once all messages have left, or after a while; `closed` follows.
   void close(WebLink* link);
   /// Closes at once, without an event.
   void abandon(WebLink* link);
@@ -42,9 +42,9 @@ class Web {
   static void set_tag(WebLink* link, std::uintptr_t tag);
   [[nodiscard]] static std::uintptr_t tag(const WebLink* link);
 
-  /// What GET /metrics answers. Who has shown nothing for a while is not healthy.
+  /// Sets the answer to GET /metrics. A server that shows none for a while counts as unhealthy.
   void show(std::string metrics);
-  /// For connections that begin from now on.
+  /// Uses this certificate for new connections.
   void use(TlsContext certificate);
 
  private:

@@ -1,4 +1,4 @@
-// What becomes of each connection of a WebLoop: taken, opened, written to, looked after, gone.
+// The connections of a WebLoop: accepting, opening, writing, time-outs, closing.
 #include "clock.h"
 #include "web_loop_state.h"
 
@@ -12,15 +12,15 @@ namespace {
 
 static_assert(kFrameRoom >= LWS_PRE);
 constexpr std::size_t kChunk = 64 << 10;  ///< bytes that leave at once
-/// Seconds that a client has to read the reason and to close: with what it still sends unread,
-/// closing would reset the connection, which overtakes the reason.
+/// Seconds that a client has to read the reason and to close. If the server closed with unread
+/// bytes of the client, the reset would overtake the reason.
 constexpr double kReading = 0.4;
 
 }  // namespace
 
 void WebLoop::Loop::accept() {
   TcpPeer peer;
-  for (std::size_t i = 0; i < HalfOpen::kMax; ++i) {  // Others have their turn as well.
+  for (std::size_t i = 0; i < HalfOpen::kMax; ++i) {  // Other events get their turn.
     const int descriptor = accept_tcp(state.listener, peer);
     if (descriptor < 0) return;
     WebLink* const link = enter(peer);
@@ -35,7 +35,7 @@ void WebLoop::Loop::accept() {
     adopted.fd.sockfd = descriptor;
     adopted.opaque = link;
     lws* const wsi = lws_adopt_descriptor_vhost_via_info(&adopted);
-    // What failed is closed, and gone() has heard of it or not.
+    // After an error the connection is closed; gone() may have been called or not.
     const std::lock_guard lock(state.mutex);
     if (!state.links.contains(link)) continue;
     link->wsi = wsi;
@@ -45,7 +45,7 @@ void WebLoop::Loop::accept() {
   }
 }
 
-/// A place for a connection; nullptr if there is no room or no memory for it.
+/// Adds a connection; nullptr if there is no room or no memory for it.
 WebLink* WebLoop::Loop::enter(const TcpPeer& peer) {
   if (open_links >= state.options.links) return nullptr;
   WebLink* link = nullptr;
@@ -73,7 +73,7 @@ WebLink* WebLoop::Loop::enter(const TcpPeer& peer) {
   }
 }
 
-/// It does not count any more.
+/// Removes a connection from the counts.
 void WebLoop::Loop::leave(WebLink* link) {
   half_open.remove(link);
   if (!link->accepted) return;
@@ -97,7 +97,7 @@ void WebLoop::Loop::begin(WebLink* link) {
   failed = false;
   why.clear();
   info.retry_and_idle_policy = &patience;
-  // Names are looked at in objection(), those of IPv6 too.
+  // objection() checks names, those of IPv6 too.
   if (link->server.via == Via::web)
     info.ssl_connection = LCCSCF_USE_SSL | LCCSCF_SKIP_SERVER_CERT_HOSTNAME_CHECK;
   lws* const wsi = lws_client_connect_via_info(&info);
@@ -124,11 +124,11 @@ int WebLoop::Loop::write(WebLink* link) {
         if (!link->closing) return 0;
         if (link->accepted && link->told == 0) link->told = now();
         if (link->accepted && now() - link->told < kReading) return 0;  // look_after_all() ends it.
-        if (link->broken) return kill(link), 0;  // What it still sends is not waited for.
+        if (link->broken) return kill(link), 0;  // Does not wait for its further bytes.
         lws_close_reason(link->wsi, LWS_CLOSE_STATUS_NORMAL, nullptr, 0);
         return -1;
       }
-      out = &link->unsent.front();  // Stays where it is: others are added behind it.
+      out = &link->unsent.front();  // Its address is stable: others are added behind it.
     }
     const std::size_t left = out->bytes.size() - kFrameRoom - out->done;
     const std::size_t size = std::min(left, kChunk);
@@ -146,7 +146,7 @@ int WebLoop::Loop::write(WebLink* link) {
   return 0;
 }
 
-/// The connection is no more, whatever it was.
+/// Handles the end of a connection in any state.
 void WebLoop::Loop::gone(WebLink* link, const std::string& reason) {
   if (link == beginning) {
     failed = true;
@@ -158,7 +158,7 @@ void WebLoop::Loop::gone(WebLink* link, const std::string& reason) {
   const bool announced = link->open || !link->accepted;
   link->open = false;
   link->wsi = nullptr;
-  // What answered and was found wanting will be so again.
+  // A server with a refused certificate would be refused again.
   if (!link->why.empty())
     return state.closed(link, announced, "the server is not trusted: " + link->why, true);
   const bool foreign = reason.starts_with("HS:");  // libwebsockets, of answers to the upgrade
@@ -200,7 +200,7 @@ void WebLoop::Loop::look_after_all() {
   }
   for (WebLink* const link : open) {
     const TcpState before = std::exchange(link->tcp, tcp_state(lws_get_socket_fd(link->wsi)));
-    // A long message on a slow link is a sign of life too.
+    // Progress of a long message on a slow link counts as an answer.
     if (link->tcp.read != before.read || link->tcp.taken != before.taken)
       lws_validity_confirmed(link->wsi);
     link->round_trip_ms = link->tcp.round_trip_ms;

@@ -22,7 +22,7 @@ bool floods(const WebLink& link, double now) {
 }
 
 WebLink* HalfOpen::add(WebLink* link) {
-  // Chosen among those before it: an address with most of them has had one, unless all have one.
+  // Chooses among earlier connections: an address with most has one there, unless all have one.
   auto oldest = links_.end();
   if (links_.size() >= kMax) {
     std::map<std::string_view, std::size_t> counts{{link->peer.host, 1}};

@@ -1,4 +1,4 @@
-// A WebSocket's connection: who may touch what of it. For web.cpp.
+// A WebSocket connection, and which thread may use which of its members. For web.cpp.
 #pragma once
 
 #include "tcp.h"
@@ -15,16 +15,16 @@ struct lws;
 
 namespace gicodec::streaming {
 
-/// Bytes in front of a message on its way out, for what frames it.
+/// Bytes in front of an outgoing message, for the header of its frame.
 constexpr std::size_t kFrameRoom = 16;
 
 struct Outgoing {
-  std::vector<unsigned char> bytes;  ///< the message, with that room in front
+  std::vector<unsigned char> bytes;  ///< the message behind kFrameRoom bytes
   std::size_t done = 0;              ///< bytes of the message that have left
 };
 
 struct WebLink {
-  // As it was made.
+  // Set at creation.
   TcpPeer peer;
   Address server;  ///< that a client connects to
   bool accepted = false;
@@ -33,17 +33,17 @@ struct WebLink {
   // The transport's thread.
   lws* wsi = nullptr;
   bool open = false, broken = false;
-  double told = 0;       ///< when a server's last word left, the reason; 0: it has not
-  bool trusted = false;  ///< the server's certificate was looked at, and found good
-  std::string why;       ///< it is refused
-  Message partial;       ///< message that arrives
+  double told = 0;                          ///< when the server's reason left; 0: it has not
+  bool trusted = false;                     ///< the server's certificate was verified
+  std::string why;                          ///< reason to refuse the certificate
+  Message partial;                          ///< the incomplete message that is arriving
   std::uint64_t payload = 0, messages = 0;  ///< received
   TcpState tcp;
 
   // Guarded by the transport's mutex.
   std::deque<Outgoing> unsent;
   std::size_t unsent_bytes = 0;
-  std::size_t waiting = 0, waiting_bytes = 0;  ///< received, and not asked for yet
+  std::size_t waiting = 0, waiting_bytes = 0;  ///< received, and not taken yet
   bool closing = false, abandoned = false, gone = false;
   double closing_since = 0;
 
@@ -53,19 +53,18 @@ struct WebLink {
   std::atomic<unsigned> round_trip_ms = 0;
 };
 
-/// True if so much arrived beside messages that somebody means harm: pings, empty fragments,
-/// messages in crumbs, records of nothing.
+/// True if the peer sends far more bytes than its messages need, as an attack: pings, empty or tiny
+/// fragments, empty records.
 [[nodiscard]] bool floods(const WebLink& link, double now);
 
-/// Connections that do not speak the protocol yet. There is always room for one more: it takes the
-/// place of the oldest one of the addresses that have most of them, so that silence keeps nobody
-/// out.
+/// Connections that have not begun the protocol. A further one replaces the oldest of the address
+/// with most of them, so that silent connections keep no client out.
 class HalfOpen {
  public:
-  /// Returns the one that has to go for `link`, never `link` itself; nullptr if there is room. What
-  /// it throws, std::bad_alloc, leaves everything as it was.
+  /// Adds `link`. Returns the connection to close for it, never `link` itself; nullptr if there is
+  /// room. std::bad_alloc changes nothing.
   [[nodiscard]] WebLink* add(WebLink* link);
-  /// The oldest one of an address, which has to go for another one of it; nullptr if it has none.
+  /// Removes and returns the oldest connection of an address; nullptr if it has none.
   [[nodiscard]] WebLink* take(const std::string& host);
   void remove(WebLink* link) { links_.remove(link); }
   [[nodiscard]] const std::list<WebLink*>& all() const { return links_; }

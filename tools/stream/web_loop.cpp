@@ -30,9 +30,9 @@ int WebLoop::Loop::on_event(lws* wsi, lws_callback_reasons reason, void* user, v
   try {
     return loop->take(wsi, reason, user, in, size);
   } catch (...) {
-    // No memory for this connection; what serves them all stays.
+    // No memory: closes this connection, but not the descriptor that serves all.
     const bool wishes = reason == LWS_CALLBACK_EVENT_WAIT_CANCELLED;
-    if (wishes) loop->woken = true;  // The timer takes them.
+    if (wishes) loop->woken = true;  // The timer repeats it.
     return wishes || reason == LWS_CALLBACK_RAW_RX_FILE ? 0 : -1;
   }
 }
@@ -54,7 +54,7 @@ void WebLoop::Loop::start() {
   if (certificate) info.options |= LWS_SERVER_OPTION_CREATE_VHOST_SSL_CTX;
   info.alpn = "http/1.1";
   info.server_string = "gi-server";
-  info.gid = info.uid = -1;  // As the process is.
+  info.gid = info.uid = -1;  // Keeps those of the process.
   info.retry_and_idle_policy = &patience;
   info.pt_serv_buf_size = kRead;
   info.fd_limit_per_thread = static_cast<unsigned>(
@@ -80,9 +80,9 @@ void WebLoop::Loop::serve() {
     Loop* const loop = reinterpret_cast<Timer*>(sul)->loop;
     try {
       loop->look_after_all();
-      if (loop->woken) loop->take_wishes();  // There was no memory for them when they came.
+      if (loop->woken) loop->take_wishes();  // Earlier there was no memory for them.
     } catch (...) {
-      loop->woken = true;  // No memory: the next time.
+      loop->woken = true;  // No memory: tries again at the next turn.
     }
     lws_sul_schedule(loop->context, 0, sul, sul->cb, kLookAfter);
   };
@@ -172,7 +172,7 @@ int WebLoop::Loop::take(lws* wsi, lws_callback_reasons reason, void* user, void*
   }
 }
 
-/// What the caller's thread has asked for.
+/// Carries out the requests of the caller's thread.
 void WebLoop::Loop::take_wishes() {
   woken = false;
   std::vector<WebLink*> begins;

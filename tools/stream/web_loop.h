@@ -11,14 +11,15 @@ struct WebState;
 
 class WebLoop {
  public:
-  /// Begins. `certificate`: nullptr without encryption, and for clients. Throws tools::Error.
+  /// Starts the thread. `certificate`: nullptr without encryption, and for clients. Throws
+  /// tools::Error.
   WebLoop(WebState& state, TlsContext certificate);
-  /// Ends it, and all connections with it.
+  /// Ends the thread and all connections.
   ~WebLoop();
   WebLoop(const WebLoop&) = delete;
   WebLoop& operator=(const WebLoop&) = delete;
 
-  /// There is something to do for it in the state. Any thread.
+  /// Tells the thread that the state has work for it. Any thread may call this.
   void wake();
 
  private:

@@ -1,4 +1,4 @@
-// What a WebLoop is made of. web_loop.cpp and web_connections.cpp alone see libwebsockets.
+// The state of a WebLoop. Only web_loop.cpp and web_connections.cpp see libwebsockets.
 #pragma once
 
 #include "web_loop.h"
@@ -22,7 +22,7 @@ inline constexpr const char* kWebProtocol = "gicodec";
   return size > 0 ? std::string(text.data(), static_cast<std::size_t>(size)) : std::string();
 }
 
-/// web_loop.cpp serves, web_connections.cpp has what becomes of each connection.
+/// web_loop.cpp has the event loop, web_connections.cpp the connections.
 struct WebLoop::Loop {
   Loop(WebState& state_in, TlsContext certificate_in)
       : state(state_in), certificate(std::move(certificate_in)) {}
@@ -45,7 +45,7 @@ struct WebLoop::Loop {
   void gone(WebLink* link, const std::string& reason);
   int answer(WebLink* link, lws* wsi);
   void look_after_all();
-  /// Ends it soon. One that libwebsockets does not have, not yet or no more, has nothing to end.
+  /// Ends the connection soon. Does nothing for a link that libwebsockets does not have.
   static void kill(WebLink* link) {
     if (link->wsi != nullptr)
       lws_set_timeout(link->wsi, PENDING_TIMEOUT_USER_OK, LWS_TO_KILL_ASYNC);
@@ -64,8 +64,8 @@ struct WebLoop::Loop {
   lws_vhost* vhost = nullptr;
   ssl_ctx_st* server_context = nullptr;
   bool prepared = true;
-  WebLink* beginning = nullptr;  ///< that is being connected
-  bool failed = false;           ///< it came to nothing at once; `why` says more
+  WebLink* beginning = nullptr;  ///< the link that is being connected
+  bool failed = false;           ///< connecting failed at once, see `why`
   std::string why;
   HalfOpen half_open;
   std::map<std::string, std::size_t> hosts;  ///< connections of each

@@ -7,7 +7,7 @@
 namespace gicodec::streaming {
 namespace {
 
-constexpr double kStale = 15;  ///< seconds after which a server that shows nothing is not well
+constexpr double kStale = 15;  ///< seconds after which a server that shows nothing is unhealthy
 constexpr const char* kBearer = "Bearer ";
 
 std::string page(const char* status, const char* type, const std::string& body) {

@@ -1,4 +1,4 @@
-// What the port of WebSockets answers to plain HTTP: whether the server is well, and its metrics.
+// Answers of the WebSockets port to plain HTTP: the server's health, and its metrics.
 #pragma once
 
 #include <string>
@@ -11,14 +11,14 @@ struct WebRequest {
   bool loopback = false;  ///< it comes from this machine
 };
 
-/// What the server has shown last, and when.
+/// The metrics that the server has shown last, and when.
 struct Shown {
   std::string metrics;
   double at = 0;
 };
 
-/// The whole answer, its head included. Metrics are for this machine or, if there is a token, for
-/// those who know it; who may not have them is not told that they are there.
+/// The whole answer with its header. Metrics are for this machine or, if there is a token, for
+/// requests with it; others get the answer for an unknown path.
 [[nodiscard]] std::string web_answer(const WebRequest& request, const Shown& shown,
                                      const std::string& metrics_token, double now);
 

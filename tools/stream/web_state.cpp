@@ -10,8 +10,8 @@
 namespace gicodec::streaming {
 namespace {
 
-/// Received messages of a link that nobody has asked for. Beyond, the peer floods: to make it wait
-/// instead, with lws_rx_flow_control(), sends libwebsockets 4.1 into an endless loop over TLS.
+/// Received messages of a link that wait for next(). A peer beyond it floods. lws_rx_flow_control()
+/// could make it wait, but sends libwebsockets 4.1 into an endless loop over TLS.
 constexpr std::size_t kMaxWaiting = 4096;
 
 }  // namespace
