@@ -47,7 +47,7 @@ void for_each_item(const Threads& threads, std::size_t items, Body&& body) {
     Body& body;
     std::size_t count;
     std::atomic<std::size_t> next{0};
-    std::atomic_flag failed = ATOMIC_FLAG_INIT;
+    std::atomic<bool> failed{false};
     std::exception_ptr error{};
 
     static void take(void* self, unsigned thread) noexcept {
@@ -57,7 +57,7 @@ void for_each_item(const Threads& threads, std::size_t items, Body&& body) {
           all.body(thread, item);
         }
       } catch (...) {
-        if (!all.failed.test_and_set()) all.error = std::current_exception();
+        if (!all.failed.exchange(true)) all.error = std::current_exception();
       }
     }
   };
