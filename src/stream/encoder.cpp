@@ -1,5 +1,6 @@
-// texture view → select → publish (strip, drop unchanged blocks) → backend → packet; then the
-// mirror follows.
+// select() reads the view and publishes it: it strips each block and numbers new contents.
+// keep_changed() drops blocks that the decoder has. write() codes the rest into a packet. commit()
+// notes what the decoder now holds.
 #include <gicodec/encoder.h>
 
 #include "base/guard.h"
@@ -22,7 +23,7 @@ struct Encoder::State {
 Status Encoder::State::encode(const ConstTextureView& view, Selection selection,
                               std::size_t max_size, Packet& out) {
   const bool keyframe = texture->keyframe_due();
-  const Pending pending({&texture, 1});
+  const CancelUncommitted pending({&texture, 1});
   Status status = texture->select(view, selection);
   if (status != Status::ok) return status;
   if (selection.type() == Selection::Type::changed) texture->keep_changed(keyframe);

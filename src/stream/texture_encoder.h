@@ -80,13 +80,13 @@ class TextureEncoder {
 };
 
 /// Its destructor cancels what was not committed.
-class Pending {
+class CancelUncommitted {
  public:
-  explicit Pending(std::span<const std::unique_ptr<TextureEncoder>> textures) noexcept
+  explicit CancelUncommitted(std::span<const std::unique_ptr<TextureEncoder>> textures) noexcept
       : textures_(textures) {}
-  Pending(const Pending&) = delete;
-  Pending& operator=(const Pending&) = delete;
-  ~Pending() {
+  CancelUncommitted(const CancelUncommitted&) = delete;
+  CancelUncommitted& operator=(const CancelUncommitted&) = delete;
+  ~CancelUncommitted() {
     for (const auto& texture : textures_) texture->cancel();
   }
 

@@ -61,7 +61,7 @@ Status VolumeEncoder::State::encode(std::span<const ConstTextureView> views,
                                     std::vector<Packet>& out) {
   const bool keyframe = std::any_of(textures.begin(), textures.end(),
                                     [](const auto& texture) { return texture->keyframe_due(); });
-  const Pending pending(textures);
+  const CancelUncommitted pending(textures);
   for (std::size_t group = 0; group < volume.groups.size(); ++group) {
     const auto own = textures_of(group);
     const Status status = select(group, views.first(own.size()), selections[group], keyframe);

@@ -29,7 +29,8 @@ struct DistributorOptions {
   Grid region{4, 4, 4};
   std::uint32_t max_clients = 4096;
   bool all_visible = false;  ///< clients see everything until set_visible(); false: nothing
-  /// Updates of a texture that a client may leave unacknowledged and still revert by resume().
+  /// Packets of a texture that a client may leave unacknowledged and still revert by resume(): one
+  /// an update, two if blocks moved.
   std::uint32_t max_unacknowledged = 32;
 };
 

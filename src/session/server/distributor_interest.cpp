@@ -204,11 +204,11 @@ static BlockMask due_bundles(const ServedClient& client) {
 }
 
 /// The rest of the backlog; nullopt if fewer than `most` blocks are left or other bundles are due.
-static std::optional<Pending> collect_backlog(ServedClient& client, std::uint32_t now,
-                                              std::size_t most) {
+static std::optional<PendingBlocks> collect_backlog(ServedClient& client, std::uint32_t now,
+                                                    std::size_t most) {
   Backlog& backlog = client.backlog;
   if (backlog.oldest.size() < most || backlog.due != due_bundles(client)) return std::nullopt;
-  Pending pending;
+  PendingBlocks pending;
   pending.candidates.reserve(backlog.oldest.size());
   const auto done = [&](const Backlog::Place& at) {
     UnicastBundle& unicast = client.unicast[at.bundle];
@@ -226,13 +226,13 @@ static std::optional<Pending> collect_backlog(ServedClient& client, std::uint32_
   return pending;
 }
 
-Pending collect(ServedClient& client, std::uint64_t update, std::size_t most) {
+PendingBlocks collect(ServedClient& client, std::uint64_t update, std::size_t most) {
   // With so many times `most` blocks, the backlog lasts for several updates.
   constexpr std::size_t kAhead = 3;
   const auto now = static_cast<std::uint32_t>(update);
   if (auto pending = collect_backlog(client, now, most)) return *std::move(pending);
   client.backlog = {};
-  Pending pending;
+  PendingBlocks pending;
   // The order of older().
   const auto age_of = [](const UnicastBundle& unicast, std::uint32_t block) {
     return std::uint64_t{unicast.pending_since[block]} << 32 | unicast.bundle->order[block];

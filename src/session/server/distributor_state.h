@@ -1,5 +1,6 @@
-// The state of a Distributor. distributor.cpp has its calls; distributor_unicast.cpp and
-// distributor_shared.cpp make the packets of unicast and shared delivery.
+// The state of a Distributor. distributor.cpp publishes and updates; _clients and _volumes have the
+// other calls; _interest finds pending blocks; _unicast and _regions write packets; _shared counts
+// subscribers and hands packets of regions out.
 #pragma once
 
 #include "session/server/distributor.h"
@@ -112,13 +113,13 @@ struct Planned {
 }
 
 /// The pending blocks of a client in all due bundles.
-struct Pending {
+struct PendingBlocks {
   std::vector<Candidate> candidates;  ///< in order of bundle and block
   std::size_t blocks = 0;             ///< all pending blocks, candidates or not
 };
 /// Returns at least the `most` candidates that are pending longest, and all candidates if not only
 /// age counts. Examines all blocks only if the backlog has too few.
-[[nodiscard]] Pending collect(ServedClient& client, std::uint64_t update, std::size_t most);
+[[nodiscard]] PendingBlocks collect(ServedClient& client, std::uint64_t update, std::size_t most);
 /// True if the client with this interest in a bundle does not hold the block's current contents.
 [[nodiscard]] bool is_pending(const UnicastBundle& unicast, const BlockMask& interest,
                               std::uint32_t block) noexcept;

@@ -12,7 +12,7 @@
 namespace gicodec {
 namespace {
 
-/// Updates of a texture that can be reverted, at least.
+/// Packets of a texture that can be reverted, at least.
 constexpr std::uint32_t kUnacknowledged = 32;
 
 }  // namespace

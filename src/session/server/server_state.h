@@ -1,5 +1,6 @@
-// The state of a Server. server.cpp has the connections, server_updates.cpp the updates,
-// server_messages.cpp the answers to clients.
+// The state of a Server. server.cpp has the connections, server_volumes.cpp the volumes,
+// server_updates.cpp the updates, server_messages.cpp the answers to clients, server_congestion.cpp
+// what each client gets in an update.
 #pragma once
 
 #include <gicodec/server.h>
