@@ -191,7 +191,7 @@ class Server {
   /// Ends a connection and its session.
   void drop(ConnectionId connection, Reason reason);
   /// Sets which blocks of a group the client sees: one byte per block, e.g. by
-  /// add_shading_probes(); empty: none. Blocks that visible ones depend on become visible too. A
+  /// add_shading_probes(); empty: none. The client also gets the blocks that they depend on. A
   /// client sees everything at first; the last set_visible() or Subscribe counts. Errors:
   /// unknown_connection, mask_mismatch.
   Status set_visible(ConnectionId connection, std::uint16_t volume,

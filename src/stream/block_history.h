@@ -21,7 +21,7 @@ namespace gicodec {
 
 // With Use::server, threads may read, hold and release between two calls of publish().
 
-/// A number for contents of a block, which do not change as long as they are held.
+/// A version of a block: the number of its contents, which do not change while it is held.
 using BlockId = std::uint32_t;
 inline constexpr BlockId kNothing = 0;  ///< not received: zeros; always exists
 

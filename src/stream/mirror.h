@@ -43,8 +43,8 @@ class Mirror {
               std::span<const std::byte> records, std::span<const std::byte> presence,
               const StaleBands& stale, const CheckedView<std::byte>* view = nullptr) noexcept;
 
-  /// Writes some blocks to where those of `places`, as many, stand in a texture `to` of the same
-  /// blocks. Cannot fail.
+  /// Writes block blocks[i] to the place of block places[i] in a texture `to` with blocks of the
+  /// same record and shape. Both lists have the same length. Cannot fail.
   void write(std::span<const std::uint32_t> blocks, const TextureDesc& to,
              const CheckedView<std::byte>& view,
              std::span<const std::uint32_t> places) const noexcept;

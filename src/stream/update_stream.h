@@ -23,7 +23,7 @@ using Replaced = Vector<std::pair<std::uint32_t, BlockId>>;
 
 struct WrittenPacket {
   PacketType type = PacketType::delta;  ///< of a stand-in: keyframe, delta or intra
-  bool whole = false;                   ///< a keyframe of all blocks that were sent
+  bool whole = false;                   ///< a keyframe that repeats all blocks sent before
   Contents contents = {};
   Packet packet = {};
   std::uint32_t sequence = 0, checksum = 0;
@@ -35,7 +35,7 @@ struct WrittenPacket {
 struct Written {
   WrittenPacket of[2] = {};           ///< blocks that stayed, and blocks that moved (intra)
   std::size_t first = 0, number = 0;  ///< which of them were written
-  Contents silent = {};               ///< changes of the stream's state without a packet
+  Contents silent = {};               ///< new contents that the receiver holds already: no packet
   Vector<BlockId> held = {};          ///< the receiver's state between the two packets
 
   [[nodiscard]] std::span<WrittenPacket> packets() noexcept { return {of + first, number}; }
@@ -87,13 +87,13 @@ class UpdateStream {
     keyframe,  ///< nothing: a keyframe of exactly these blocks, which clears all others
   };
   /// Writes the packets that give the receiver the current contents of `blocks` (ascending,
-  /// unique): one, and an intra packet for those that moved. Changes only capacities; commit(),
-  /// which cannot fail, changes the state, before the next publish().
+  /// unique): one, and a second one (intra) if blocks moved. The state does not change yet: call
+  /// commit(), which cannot fail, before the next publish().
   Status write(From from, std::span<const std::uint32_t> blocks, BackendEncoder& backend,
                PacketWriter& writer, Written& out);
-  /// The same for receivers of `from`, an earlier state of this stream; they also get what was sent
-  /// since. Null: receivers that hold nothing get a keyframe of all that was sent. `also`: one byte
-  /// per block, not 0 for blocks to send in any case; or empty.
+  /// Like write(), for receivers in the earlier state `from`: their packets also hold what was sent
+  /// since `from`. Null: receivers that hold nothing get a keyframe of all that was sent. `also`:
+  /// one byte per block, not 0 for blocks to send in any case; or empty.
   Status write_from(const StreamState* from, std::span<const std::uint32_t> blocks,
                     std::span<const std::uint8_t> also, BackendEncoder& backend,
                     PacketWriter& writer, Written& out) const;

@@ -75,8 +75,8 @@ class Distributor {
   [[nodiscard]] Result<ClientId> connect(Delivery delivery = Delivery::unicast, Budget budget = {});
   Status disconnect(ClientId client);
   Status set_budget(ClientId client, Budget budget);
-  /// Sets which blocks of a group the client sees: one byte per block. Blocks that visible ones
-  /// depend on become visible too.
+  /// Sets which blocks of a group the client sees: one byte per block. The client also gets
+  /// the blocks that visible ones depend on.
   Status set_visible(ClientId client, std::uint16_t volume, std::span<const std::uint8_t> visible,
                      std::uint8_t group = 0);
   /// Makes no packets for a suspended client. Blocks that change meanwhile stay pending; of shared

@@ -48,7 +48,8 @@ struct SharedRegion {
   Subscribers up_to_date;        ///< hold the streams' state
   Subscribers waiting;           ///< hold no known state
   // Where blocks depend on others:
-  std::uint32_t changed = 0;          ///< first update with other contents; 0: none yet
+  /// The first update in which current contents differ from the streams'; 0: they do not differ.
+  std::uint32_t changed = 0;
   bool dependencies_changed = false;  ///< `dependencies` has more than the current ones
   std::vector<std::uint32_t>
       dependencies;  ///< regions that the streams' blocks depend on, ascending
@@ -125,7 +126,8 @@ struct Bundle {
   [[nodiscard]] bool depends_on(const Bundle& other) const noexcept {
     return group->depends_on == other.group_id;
   }
-  /// Where blocks depend on others: clients may no longer hold all that they held.
+  /// Where blocks depend on others: no state that clients hold counts as current any more, since
+  /// blocks moved or became inactive.
   void forget_held() noexcept;
 };
 
