@@ -141,7 +141,7 @@ Status ContainerPlayer::State::gather() {
     if (count == packets.size()) packets.emplace_back();
     packets[count] = *std::exchange(ahead, std::nullopt);
     packed += packets[count++].bytes.size();
-    const Status room = decoders.set_beside(packed);
+    const Status room = decoders.set_callers_bytes(packed);
     where.memory = decoders.needed();
     if (room != Status::ok) {
       packets.clear();

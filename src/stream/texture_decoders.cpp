@@ -26,7 +26,7 @@ Status TextureDecoders::check_memory(std::uint64_t more, std::uint64_t shared) n
   return needed_ <= options_.limits.max_total_bytes ? Status::ok : Status::limit_exceeded;
 }
 
-Status TextureDecoders::set_beside(std::uint64_t bytes) noexcept {
+Status TextureDecoders::set_callers_bytes(std::uint64_t bytes) noexcept {
   beside_ = bytes;
   return check_memory(0, scratched_);
 }

@@ -63,8 +63,9 @@ class TextureDecoders {
   [[nodiscard]] std::uint64_t memory() const noexcept { return held_ + scratched_; }
   /// Sets the bytes that the caller holds itself, which count as well. limit_exceeded beyond
   /// max_total_bytes.
-  Status set_beside(std::uint64_t bytes) noexcept;
-  /// Bytes that the last decode() or set_beside() compared with max_total_bytes; 0: it did not.
+  Status set_callers_bytes(std::uint64_t bytes) noexcept;
+  /// Bytes that the last decode() or set_callers_bytes() compared with max_total_bytes; 0: it did
+  /// not.
   [[nodiscard]] std::uint64_t needed() const noexcept { return needed_; }
 
  private:

@@ -144,7 +144,7 @@ Status Distributor::publish(std::uint16_t volume, std::uint8_t texture, ConstTex
     if (of.linked || tells) before.assign(history.current().begin(), history.current().end());
     if (of.linked) {
       const std::size_t ids = 1 + std::size_t{*std::max_element(before.begin(), before.end())};
-      served.until.resize(std::max(served.until.size(), ids));
+      served.last_current.resize(std::max(served.last_current.size(), ids));
     }
     history.publish(*checked, blocks, presence);
     // From here on nothing can fail.
@@ -257,7 +257,8 @@ std::size_t Distributor::memory() const noexcept {
   for (const auto& volume : state_->volumes) {
     for (const auto& bundle : volume->bundles) {
       for (const auto& texture : bundle->textures) {
-        bytes += texture->history.memory() + texture->until.capacity() * sizeof(std::uint32_t);
+        bytes +=
+            texture->history.memory() + texture->last_current.capacity() * sizeof(std::uint32_t);
       }
     }
     for (const Dependencies& dependencies : volume->dependencies) bytes += dependencies.memory();

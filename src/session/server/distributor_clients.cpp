@@ -33,10 +33,10 @@ Status Distributor::State::add_volume_to(ServedClient& client, ServedVolume& vol
     }
   }
   client.interest.resize(places);
-  client.joins.resize(places);
+  client.subscriptions.resize(places);
   for (const auto& bundle : volume.bundles) {
     if (client.delivery == Delivery::shared) {
-      client.joins[id].emplace_back(bundle->regions.size() * bundle->textures.size());
+      client.subscriptions[id].emplace_back(bundle->regions.size() * bundle->textures.size());
       continue;
     }
     client.unicast.push_back({&volume, bundle.get(), {}, {}, {}});
@@ -66,7 +66,7 @@ void Distributor::State::drop_volume_of(ServedClient& client, const ServedVolume
   const std::size_t id = volume.id();
   if (id < client.visible.size()) client.visible[id].clear();
   if (id < client.interest.size()) client.interest[id].reset();
-  if (id < client.joins.size()) client.joins[id].clear();
+  if (id < client.subscriptions.size()) client.subscriptions[id].clear();
 }
 
 bool Distributor::State::any_shared() const noexcept {
@@ -140,10 +140,10 @@ Status Distributor::resume(ClientId client, StreamId stream, std::uint32_t seque
   ServedClient* const found = state_->find(client);
   if (found == nullptr) return Status::unknown_connection;
   if (found->delivery == Delivery::shared) {
-    const auto joins = state_->find_joins(*found, stream);
-    if (joins.empty()) return Status::invalid_argument;
-    Join& join = joins[state_->find(stream.volume, stream.texture).place];
-    join = {join.subscribed, sequence, checksum, join.since};
+    const auto subscriptions = state_->find_subscriptions(*found, stream);
+    if (subscriptions.empty()) return Status::invalid_argument;
+    Subscription& subscription = subscriptions[state_->find(stream.volume, stream.texture).place];
+    subscription = {subscription.subscribed, sequence, checksum, subscription.since};
     return Status::ok;
   }
   UpdateStream* const unicast = state_->find(*found, stream);
@@ -219,8 +219,9 @@ std::size_t Distributor::memory_of(ClientId client) const noexcept {
     if (masks == nullptr) continue;
     for (const BlockMask& mask : *masks) bytes += mask.capacity();
   }
-  for (const auto& bundles : found->joins) {
-    for (const auto& joins : bundles) bytes += joins.capacity() * sizeof(Join);
+  for (const auto& bundles : found->subscriptions) {
+    for (const auto& subscriptions : bundles)
+      bytes += subscriptions.capacity() * sizeof(Subscription);
   }
   for (const UnicastBundle& unicast : found->unicast) {
     bytes += sizeof unicast + unicast.pending_since.capacity() * sizeof unicast.pending_since[0];
@@ -237,27 +238,30 @@ void Distributor::State::set_joins(ServedClient& client, const ServedVolume& vol
     const BlockMask& visible = client.visible[volume.id()][bundle.group_id];
     bool needed = false;
     for (std::size_t later = l + 1; later < volume.bundles.size(); ++later) {
-      const auto& joins = client.joins[volume.id()][later];
-      needed = needed || (volume.bundles[later]->depends_on(bundle) &&
-                          std::any_of(joins.begin(), joins.end(),
-                                      [](const Join& join) { return join.subscribed; }));
+      const auto& subscriptions = client.subscriptions[volume.id()][later];
+      needed =
+          needed ||
+          (volume.bundles[later]->depends_on(bundle) &&
+           std::any_of(subscriptions.begin(), subscriptions.end(),
+                       [](const Subscription& subscription) { return subscription.subscribed; }));
     }
     const auto is_seen = [&](std::uint32_t block) { return visible[block] != 0; };
     for (std::uint32_t region = 0; region < bundle.regions.size(); ++region) {
       const auto& blocks = bundle.region_blocks[region];
       const bool seen = !visible.empty() && std::any_of(blocks.begin(), blocks.end(), is_seen);
-      for (Join& join : client.joins_of(volume.id(), l, bundle, region)) {
-        if (!join.subscribed) join.since = static_cast<std::uint32_t>(updates) + 1;
-        join.subscribed = needed || seen;
+      for (Subscription& subscription : client.subscriptions_of(volume.id(), l, bundle, region)) {
+        if (!subscription.subscribed) subscription.since = static_cast<std::uint32_t>(updates) + 1;
+        subscription.subscribed = needed || seen;
       }
     }
   }
 }
 
-std::span<Join> Distributor::State::find_joins(ServedClient& client, StreamId id) const noexcept {
+std::span<Subscription> Distributor::State::find_subscriptions(ServedClient& client,
+                                                               StreamId id) const noexcept {
   const TexturePlace at = find(id.volume, id.texture);
   if (at.bundle == nullptr || id.region >= at.bundle->regions.size()) return {};
-  return client.joins_of(id.volume, at.bundle_id, *at.bundle, id.region);
+  return client.subscriptions_of(id.volume, at.bundle_id, *at.bundle, id.region);
 }
 
 }  // namespace gicodec

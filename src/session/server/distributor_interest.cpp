@@ -87,7 +87,7 @@ void Bundle::forget_held() noexcept {
   if (!is_dependency) return;
   for (SharedRegion& shared : regions) {
     shared.changed = 1;
-    for (Lagging& lagging : shared.lagging) lagging.until = 0;
+    for (Lagging& lagging : shared.lagging) lagging.last_current = 0;
   }
 }
 
@@ -111,7 +111,7 @@ void ServedVolume::note_change(Bundle& bundle, ServedTexture& texture, std::uint
   const auto last = static_cast<std::uint32_t>(update);
   const std::uint32_t region = bundle.cut.region_of(block);
   SharedRegion& shared = bundle.regions[region];
-  texture.until[before] = last;
+  texture.last_current[before] = last;
   if (shared.changed == 0) shared.changed = last + 1;
   if (bundle.group->depends_on == TextureGroup::kNone || bundle.first != &texture.history) return;
   dependencies[bundle.group_id].set_stale(block);
@@ -159,15 +159,16 @@ void Distributor::State::refresh_interest() {
   }
 }
 
-std::uint32_t UnicastBundle::until(std::uint32_t block, std::uint64_t update) const noexcept {
-  auto until = static_cast<std::uint32_t>(update);
+std::uint32_t UnicastBundle::last_current(std::uint32_t block,
+                                          std::uint64_t update) const noexcept {
+  auto last_current = static_cast<std::uint32_t>(update);
   for (std::size_t i = 0; i < streams.size(); ++i) {
     const BlockId held = streams[i].sent(block);
     if (held == kNothing || streams[i].moved(block)) return 0;
     if (held != streams[i].current(block))
-      until = std::min(until, bundle->textures[i]->until[held]);
+      last_current = std::min(last_current, bundle->textures[i]->last_current[held]);
   }
-  return until;
+  return last_current;
 }
 
 static Candidate candidate(const ServedClient& client, std::uint32_t bundle, std::uint32_t block,
@@ -288,7 +289,7 @@ std::vector<Candidate> missing_dependencies(ServedClient& client, const Candidat
          unicast.volume->dependencies[unicast.bundle->group_id][dependent.block]) {
       // A block that is not pending is at the client already, or is not active.
       if (note_pending(client, other, client.interest_in(other), block, now) != 0 &&
-          other.until(block, update) < unicast.pending_since[dependent.block]) {
+          other.last_current(block, update) < unicast.pending_since[dependent.block]) {
         missing.push_back(candidate(client, i, block, now));
       }
     }

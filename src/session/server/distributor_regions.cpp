@@ -142,7 +142,8 @@ Status Distributor::State::advance(const ServedVolume& volume, const Bundle& bun
 
   // Allocates first, so that nothing can fail once there are packets.
   if (known) {
-    Lagging before{.states = {}, .until = shared.until(updates - 1), .subscribers = {}};
+    Lagging before{
+        .states = {}, .last_current = shared.last_current(updates - 1), .subscribers = {}};
     for (const UpdateStream& stream : shared.streams) before.states.push_back(stream.state());
     shared.lagging.push_back(std::move(before));
   }

@@ -17,32 +17,35 @@ constexpr std::size_t kMaxCatchUps = 4;
 /// An update may exceed the budget, which limits the average, by this factor.
 constexpr float kBurst = 2;
 
-/// True if the client of these joins, one per texture, holds the given states.
-bool holds(std::span<const Join> joins, std::span<const StreamState> states) noexcept {
-  return std::equal(joins.begin(), joins.end(), states.begin(), states.end(),
-                    [](const Join& join, const StreamState& state) {
-                      return state.is(join.sequence, join.checksum);
+/// True if the client of these subscriptions, one per texture, holds the given states.
+bool holds(std::span<const Subscription> subscriptions,
+           std::span<const StreamState> states) noexcept {
+  return std::equal(subscriptions.begin(), subscriptions.end(), states.begin(), states.end(),
+                    [](const Subscription& subscription, const StreamState& state) {
+                      return state.is(subscription.sequence, subscription.checksum);
                     });
 }
 
-/// True if the client of these joins holds the streams' state.
-bool is_current(const SharedRegion& shared, std::span<const Join> joins) noexcept {
-  return std::equal(joins.begin(), joins.end(), shared.streams.begin(), shared.streams.end(),
-                    [](const Join& join, const UpdateStream& stream) {
+/// True if the client of these subscriptions holds the streams' state.
+bool is_current(const SharedRegion& shared, std::span<const Subscription> subscriptions) noexcept {
+  return std::equal(subscriptions.begin(), subscriptions.end(), shared.streams.begin(),
+                    shared.streams.end(),
+                    [](const Subscription& subscription, const UpdateStream& stream) {
                       return !stream.keyframe_next() &&
-                             stream.state().is(join.sequence, join.checksum);
+                             stream.state().is(subscription.sequence, subscription.checksum);
                     });
 }
 
 template <typename Shared>
-auto find_lagging(Shared& shared, std::span<const Join> joins) noexcept {
+auto find_lagging(Shared& shared, std::span<const Subscription> subscriptions) noexcept {
   return std::find_if(shared.lagging.begin(), shared.lagging.end(),
-                      [&](const Lagging& one) { return holds(joins, one.states); });
+                      [&](const Lagging& one) { return holds(subscriptions, one.states); });
 }
 
-Subscribers& subscribers_of(SharedRegion& shared, std::span<const Join> joins) noexcept {
-  if (is_current(shared, joins)) return shared.up_to_date;
-  const auto lagging = find_lagging(shared, joins);
+Subscribers& subscribers_of(SharedRegion& shared,
+                            std::span<const Subscription> subscriptions) noexcept {
+  if (is_current(shared, subscriptions)) return shared.up_to_date;
+  const auto lagging = find_lagging(shared, subscriptions);
   return lagging != shared.lagging.end() ? lagging->subscribers : shared.waiting;
 }
 
@@ -54,18 +57,18 @@ std::size_t spread(std::uint64_t update, std::size_t count) noexcept {
 
 }  // namespace
 
-/// Calls visit(volume, bundle, region, place, joins, shared) for each region that a client
+/// Calls visit(volume, bundle, region, place, subscriptions, shared) for each region that a client
 /// subscribes to.
 template <typename Visit>
-void Distributor::State::for_each_join(ServedClient& client, const Visit& visit) noexcept {
+void Distributor::State::for_each_subscription(ServedClient& client, const Visit& visit) noexcept {
   std::size_t place = 0;
   for (const auto& volume : volumes) {
     for (std::size_t l = 0; l < volume->bundles.size(); ++l) {
       Bundle& bundle = *volume->bundles[l];
       for (std::uint32_t region = 0; region < bundle.regions.size(); ++region, ++place) {
-        const auto joins = client.joins_of(volume->id(), l, bundle, region);
-        if (joins[0].subscribed)
-          visit(*volume, bundle, region, place, joins, bundle.regions[region]);
+        const auto subscriptions = client.subscriptions_of(volume->id(), l, bundle, region);
+        if (subscriptions[0].subscribed)
+          visit(*volume, bundle, region, place, subscriptions, bundle.regions[region]);
       }
     }
   }
@@ -77,20 +80,21 @@ void Distributor::State::gather_subscribers() noexcept {
     ServedClient& client = *entry.second;
     if (client.delivery != Delivery::shared) continue;
     std::size_t regions = 0, bytes = 0;
-    for_each_join(client, [&](const ServedVolume&, const Bundle&, std::uint32_t, std::size_t,
-                              std::span<const Join>, const SharedRegion& shared) {
-      ++regions;
-      bytes += shared.bytes;
-    });
+    for_each_subscription(client,
+                          [&](const ServedVolume&, const Bundle&, std::uint32_t, std::size_t,
+                              std::span<const Subscription>, const SharedRegion& shared) {
+                            ++regions;
+                            bytes += shared.bytes;
+                          });
     client.rate.choose(client.budget, regions, bytes / std::max<std::size_t>(regions, 1));
-    for_each_join(client,
-                  [&](const ServedVolume&, const Bundle& bundle, std::uint32_t, std::size_t place,
-                      std::span<const Join> joins, SharedRegion& shared) {
-                    Subscribers& subscribers = subscribers_of(shared, joins);
-                    ++subscribers.all;
-                    if (!client.suspended && client.rate.turn(bundle.turn(updates), place))
-                      ++subscribers.served;
-                  });
+    for_each_subscription(
+        client, [&](const ServedVolume&, const Bundle& bundle, std::uint32_t, std::size_t place,
+                    std::span<const Subscription> subscriptions, SharedRegion& shared) {
+          Subscribers& subscribers = subscribers_of(shared, subscriptions);
+          ++subscribers.all;
+          if (!client.suspended && client.rate.turn(bundle.turn(updates), place))
+            ++subscribers.served;
+        });
   }
 }
 
@@ -125,35 +129,37 @@ std::uint32_t Distributor::pending_shared(ClientId client) const noexcept {
   if (found == nullptr || found->delivery != Delivery::shared) return 0;
   std::uint32_t blocks = 0;
   const auto count = [&](const ServedVolume& volume, const Bundle& bundle, std::uint32_t,
-                         std::size_t, std::span<const Join> joins, SharedRegion& shared) {
-    const bool all = !is_current(shared, joins);
+                         std::size_t, std::span<const Subscription> subscriptions,
+                         SharedRegion& shared) {
+    const bool all = !is_current(shared, subscriptions);
     for (std::uint32_t block = 0; block < shared.streams[0].size(); ++block) {
       if (!volume.is_active(bundle.group_id, shared.streams[0].source(block))) continue;
       if (all || bundle.outdated(shared.streams, block)) ++blocks;
     }
   };
-  state_->for_each_join(*found, count);
+  state_->for_each_subscription(*found, count);
   return blocks;
 }
 
 /// True if the client holds all that the blocks of a region depend on, in versions that were
 /// current at some time since its state of that region is outdated.
-bool Distributor::State::holds_dependencies(ServedClient& client, const ServedVolume& volume,
-                                            const Bundle& bundle, const SharedRegion& dependent,
-                                            std::span<const Join> joins) const noexcept {
+bool Distributor::State::holds_dependencies(
+    ServedClient& client, const ServedVolume& volume, const Bundle& bundle,
+    const SharedRegion& dependent, std::span<const Subscription> subscriptions) const noexcept {
   if (dependent.dependencies.empty()) return true;
-  const auto since = find_lagging(dependent, joins);
-  const std::uint32_t first = since == dependent.lagging.end() ? joins[0].since : since->until + 1;
-  const auto is_recent = [&](const SharedRegion& shared, std::span<const Join> held) {
-    if (is_current(shared, held)) return shared.until(updates) >= first;
+  const auto since = find_lagging(dependent, subscriptions);
+  const std::uint32_t first =
+      since == dependent.lagging.end() ? subscriptions[0].since : since->last_current + 1;
+  const auto is_recent = [&](const SharedRegion& shared, std::span<const Subscription> held) {
+    if (is_current(shared, held)) return shared.last_current(updates) >= first;
     const auto lagging = find_lagging(shared, held);
-    return lagging != shared.lagging.end() && lagging->until >= first;
+    return lagging != shared.lagging.end() && lagging->last_current >= first;
   };
   for (std::size_t l = 0; l < volume.bundles.size(); ++l) {
     const Bundle& other = *volume.bundles[l];
     if (!bundle.depends_on(other)) continue;
     for (const std::uint32_t region : dependent.dependencies) {
-      const auto held = client.joins_of(volume.id(), l, other, region);
+      const auto held = client.subscriptions_of(volume.id(), l, other, region);
       if (!is_recent(other.regions[region], held)) return false;
     }
   }
@@ -166,12 +172,13 @@ Status Distributor::State::hand_out_regions(ServedClient& client) noexcept {
   client.held_back = client.rate.slowed();
   if (client.suspended) return Status::ok;
   std::size_t packets = 0, places = 0;
-  for_each_join(client, [&](const ServedVolume&, const Bundle& bundle, std::uint32_t,
-                            std::size_t place, std::span<const Join> joins, SharedRegion& shared) {
-    places = place + 1;
-    if (!client.rate.turn(bundle.turn(updates), place)) return;
-    packets += subscribers_of(shared, joins).packets.size();
-  });
+  for_each_subscription(
+      client, [&](const ServedVolume&, const Bundle& bundle, std::uint32_t, std::size_t place,
+                  std::span<const Subscription> subscriptions, SharedRegion& shared) {
+        places = place + 1;
+        if (!client.rate.turn(bundle.turn(updates), place)) return;
+        packets += subscribers_of(shared, subscriptions).packets.size();
+      });
   const Status room = guarded([&]() -> Status {
     client.out.reserve(packets);
     return Status::ok;
@@ -184,37 +191,37 @@ Status Distributor::State::hand_out_regions(ServedClient& client) noexcept {
   std::size_t turns = 0, bytes = 0, blocks = 0;
   for (const bool wrapped : {false, true}) {
     if (wrapped && start == 0) break;
-    for_each_join(
-        client, [&](const ServedVolume& volume, const Bundle& bundle, std::uint32_t region,
-                    std::size_t place, std::span<Join> joins, SharedRegion& shared) {
-          if ((place < start) != wrapped || !client.rate.turn(bundle.turn(updates), place)) return;
-          ++turns;
-          Subscribers& subscribers = subscribers_of(shared, joins);
-          if (subscribers.packets.empty()) return;
-          std::size_t size = 0;
-          for (const SharedPacket& one : subscribers.packets) size += one.packet->size();
-          const bool full = bytes > 0 && static_cast<double>(bytes + size) > most;
-          if (full || !holds_dependencies(client, volume, bundle, shared, joins)) {
-            client.held_back = true;
-            return;
-          }
-          bytes += size;
-          const auto tier = static_cast<std::uint8_t>(client.rate.tier(place));
-          for (const SharedPacket& one : subscribers.packets) {
-            client.out.push_back({{volume.id(), one.texture, region},
-                                  tier,
-                                  one.blocks,
-                                  one.sequence,
-                                  one.keyframe,
-                                  one.packet});
-            blocks += one.blocks;
-          }
-          for (std::size_t i = 0; i < joins.size(); ++i) {
-            joins[i].sequence = shared.streams[i].sequence();
-            joins[i].checksum = shared.streams[i].checksum();
-          }
-          --subscribers.all;
-        });
+    for_each_subscription(client, [&](const ServedVolume& volume, const Bundle& bundle,
+                                      std::uint32_t region, std::size_t place,
+                                      std::span<Subscription> subscriptions, SharedRegion& shared) {
+      if ((place < start) != wrapped || !client.rate.turn(bundle.turn(updates), place)) return;
+      ++turns;
+      Subscribers& subscribers = subscribers_of(shared, subscriptions);
+      if (subscribers.packets.empty()) return;
+      std::size_t size = 0;
+      for (const SharedPacket& one : subscribers.packets) size += one.packet->size();
+      const bool full = bytes > 0 && static_cast<double>(bytes + size) > most;
+      if (full || !holds_dependencies(client, volume, bundle, shared, subscriptions)) {
+        client.held_back = true;
+        return;
+      }
+      bytes += size;
+      const auto tier = static_cast<std::uint8_t>(client.rate.tier(place));
+      for (const SharedPacket& one : subscribers.packets) {
+        client.out.push_back({{volume.id(), one.texture, region},
+                              tier,
+                              one.blocks,
+                              one.sequence,
+                              one.keyframe,
+                              one.packet});
+        blocks += one.blocks;
+      }
+      for (std::size_t i = 0; i < subscriptions.size(); ++i) {
+        subscriptions[i].sequence = shared.streams[i].sequence();
+        subscriptions[i].checksum = shared.streams[i].checksum();
+      }
+      --subscribers.all;
+    });
   }
   if (start > 0) {
     std::stable_sort(
@@ -246,12 +253,12 @@ void Distributor::State::forget_subscribers() noexcept {
 
 const StreamState* Distributor::State::held_of_region(ServedClient& client,
                                                       StreamId id) const noexcept {
-  const auto joins = find_joins(client, id);
-  if (joins.empty()) return nullptr;
+  const auto subscriptions = find_subscriptions(client, id);
+  if (subscriptions.empty()) return nullptr;
   const TexturePlace at = find(id.volume, id.texture);
   const SharedRegion& shared = at.bundle->regions[id.region];
-  if (is_current(shared, joins)) return &shared.streams[at.place].state();
-  const auto lagging = find_lagging(shared, joins);
+  if (is_current(shared, subscriptions)) return &shared.streams[at.place].state();
+  const auto lagging = find_lagging(shared, subscriptions);
   return lagging == shared.lagging.end() ? nullptr : &lagging->states[at.place];
 }
 

@@ -41,11 +41,12 @@ struct UnicastBundle {
   std::vector<std::unique_ptr<BackendEncoder>> encoders;  ///< only where the backend is stateful
 
   /// The last update with the contents that the client holds of a block; 0: it holds none.
-  [[nodiscard]] std::uint32_t until(std::uint32_t block, std::uint64_t update) const noexcept;
+  [[nodiscard]] std::uint32_t last_current(std::uint32_t block,
+                                           std::uint64_t update) const noexcept;
 };
 
 /// A client's subscription to a region, and what it holds of one texture of it.
-struct Join {
+struct Subscription {
   bool subscribed = false;
   std::uint32_t sequence = 0, checksum = 0;
   std::uint32_t since = 0;  ///< the first update after it subscribed
@@ -74,7 +75,7 @@ struct ServedClient {
   std::vector<UnicastBundle> unicast;  ///< Delivery::unicast: by volume and bundle
   Backlog backlog;                     ///< unicast
   /// Shared: by volume and bundle; per region and texture.
-  std::vector<std::vector<std::vector<Join>>> joins;
+  std::vector<std::vector<std::vector<Subscription>>> subscriptions;
   float bytes_per_block = 0;   ///< unicast: recent mean; 0 before the first packet
   SharedRate rate;             ///< shared
   std::uint64_t written = 0;   ///< unicast: blocks in the packets of the last update
@@ -92,11 +93,13 @@ struct ServedClient {
     const std::uint16_t id = of.volume->id();
     return (of.volume->linked ? *interest[id] : visible[id])[of.bundle->group_id];
   }
-  /// The joins of a region of a bundle, one per texture.
-  [[nodiscard]] std::span<Join> joins_of(std::uint16_t volume, std::size_t bundle_id,
-                                         const Bundle& bundle, std::uint32_t region) noexcept {
+  /// The subscriptions of a region of a bundle, one per texture.
+  [[nodiscard]] std::span<Subscription> subscriptions_of(std::uint16_t volume,
+                                                         std::size_t bundle_id,
+                                                         const Bundle& bundle,
+                                                         std::uint32_t region) noexcept {
     const std::size_t textures = bundle.textures.size();
-    return std::span(joins[volume][bundle_id]).subspan(region * textures, textures);
+    return std::span(subscriptions[volume][bundle_id]).subspan(region * textures, textures);
   }
 };
 
@@ -174,7 +177,7 @@ struct Distributor::State {
     }
   }
   template <typename Visit>
-  void for_each_join(ServedClient& client, const Visit& visit) noexcept;
+  void for_each_subscription(ServedClient& client, const Visit& visit) noexcept;
   void gather_subscribers() noexcept;
   void allot_extras() noexcept;
   [[nodiscard]] std::vector<std::uint32_t> outdated_blocks(const ServedVolume& volume,
@@ -188,13 +191,14 @@ struct Distributor::State {
   Status hand_out_regions(ServedClient& client) noexcept;
   [[nodiscard]] bool holds_dependencies(ServedClient& client, const ServedVolume& volume,
                                         const Bundle& bundle, const SharedRegion& dependent,
-                                        std::span<const Join> joins) const noexcept;
+                                        std::span<const Subscription> subscriptions) const noexcept;
   void forget_subscribers() noexcept;
   void set_joins(ServedClient& client, const ServedVolume& volume) noexcept;
   [[nodiscard]] ServedClient* find(ClientId client);
   [[nodiscard]] UpdateStream* find(ServedClient& client, StreamId id);
-  /// The joins of a region, one per texture; none if there is no such region.
-  [[nodiscard]] std::span<Join> find_joins(ServedClient& client, StreamId id) const noexcept;
+  /// The subscriptions of a region, one per texture; none if there is no such region.
+  [[nodiscard]] std::span<Subscription> find_subscriptions(ServedClient& client,
+                                                           StreamId id) const noexcept;
   /// What the client holds of a region; null if that is not known.
   [[nodiscard]] const StreamState* held_of_region(ServedClient& client, StreamId id) const noexcept;
 

@@ -33,7 +33,7 @@ struct Subscribers {
 /// An earlier state of a region that some clients hold: one state per texture.
 struct Lagging {
   std::vector<StreamState> states;
-  std::uint32_t until = 0;  ///< SharedRegion::until() of that state
+  std::uint32_t last_current = 0;  ///< SharedRegion::last_current() of that state
   Subscribers subscribers;
 };
 
@@ -55,7 +55,7 @@ struct SharedRegion {
       dependencies;  ///< regions that the streams' blocks depend on, ascending
 
   /// The last update with the contents that the streams hold.
-  [[nodiscard]] std::uint32_t until(std::uint64_t update) const noexcept {
+  [[nodiscard]] std::uint32_t last_current(std::uint64_t update) const noexcept {
     return changed == 0 ? static_cast<std::uint32_t>(update) : changed - 1;
   }
 };
@@ -87,7 +87,7 @@ struct ServedTexture {
   /// another presence.
   BlockMask unread;
   /// Where blocks depend on others: by version, the last update in which it was current.
-  std::vector<std::uint32_t> until;
+  std::vector<std::uint32_t> last_current;
 };
 
 /// Textures of a group that travel together: all of them, or one.

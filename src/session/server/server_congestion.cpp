@@ -79,7 +79,7 @@ void Server::State::share_unicast_blocks() noexcept {
 
 /// Sets a client's budget to the least of its own, `bytes`, its share and the rates. False if a
 /// rate leaves nothing; updates pay for what earlier ones took beyond it.
-bool Server::State::keep_to_rate(Connection& connection, std::uint64_t bytes, double now) noexcept {
+bool Server::State::fits_rate(Connection& connection, std::uint64_t bytes, double now) noexcept {
   Session& session = *connection.session;
   Budget budget = session.budget;
   const auto tighten = [](auto& value, auto limit) {
@@ -113,14 +113,14 @@ std::optional<double> Server::State::oldest_filled(const Connection& connection)
 
 /// Skips a client that has used up its rate, or lags. A lagging client gets empty updates, which
 /// tell it the time, and whether it has missed an update.
-void Server::State::look_after(Connection& connection, double now) noexcept {
+void Server::State::choose_turn(Connection& connection, double now) noexcept {
   ConnectionStatistics& s = connection.statistics;
   if (connection.in_flight.empty()) connection.progress = now;
   const std::optional<double> oldest = oldest_filled(connection);
   const auto bytes = connection.congestion.budget(now, oldest, s.in_flight_bytes, interval);
   const bool full = connection.in_flight.size() >= options.limits.max_in_flight;
   s.lagging = !bytes || full || s.in_flight_bytes >= options.limits.max_in_flight_bytes;
-  const bool may = keep_to_rate(connection, bytes.value_or(0), now);
+  const bool may = fits_rate(connection, bytes.value_or(0), now);
   const bool waits = connection.session->unicast_limited && connection.session->unicast_blocks == 0;
   using Turn = Connection::Turn;
   connection.ready = may && !s.lagging && *bytes > 0;
@@ -140,7 +140,7 @@ void Server::State::look_after(Connection& connection, double now) noexcept {
 }
 
 /// Measures the interval between updates, and the mean budget of congestion control.
-void Server::State::look_at_clock(double now) noexcept {
+void Server::State::measure_interval(double now) noexcept {
   constexpr double kWeight = 1.0 / 8, kLongest = 4, kShortest = 0.01;
   const double passed = updated >= 0 ? std::max(now - updated, 0.0) : 1;
   const auto rate = static_cast<double>(options.limits.max_total_bytes_per_second);

@@ -113,11 +113,11 @@ struct Server::State {
   void tell_volumes() noexcept;
   void send_volumes(Connection& connection) noexcept;
   [[nodiscard]] std::vector<DescribedVolume> described_now() const;
-  void look_after(Connection& connection, double now) noexcept;
+  void choose_turn(Connection& connection, double now) noexcept;
   [[nodiscard]] static std::optional<double> oldest_filled(const Connection& connection) noexcept;
   void limit_unicast_blocks(double blocks) noexcept;
-  [[nodiscard]] bool keep_to_rate(Connection& connection, std::uint64_t bytes, double now) noexcept;
-  void look_at_clock(double now) noexcept;
+  [[nodiscard]] bool fits_rate(Connection& connection, std::uint64_t bytes, double now) noexcept;
+  void measure_interval(double now) noexcept;
   void make_room_to_wait() noexcept;
   void share_unicast_blocks() noexcept;
 

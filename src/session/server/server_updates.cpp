@@ -55,10 +55,10 @@ Status SharedUpdates::write_rest(const UpdateMessage& message,
 Status Server::update(double now, double time) {
   if (!std::isfinite(now) || !std::isfinite(time)) return Status::invalid_time;
   tick(now);
-  state_->look_at_clock(now);
+  state_->measure_interval(now);
   state_->share_unicast_blocks();
   for (const auto& [id, connection] : state_->connections) {
-    if (connection->session != nullptr) state_->look_after(*connection, now);
+    if (connection->session != nullptr) state_->choose_turn(*connection, now);
   }
   const std::uint64_t before = state_->distributor.updates();
   Status first = state_->distributor.update();
