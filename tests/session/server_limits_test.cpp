@@ -1,5 +1,5 @@
-// What the server's limits leave to clients who silently wait, ask again and again, or want packets
-// of their own; and who is let in at all.
+// What the server's limits leave to clients that wait silently, ask again and again, or want
+// unicast packets; and which clients get in at all.
 #include "../messages.h"
 #include "server_fixture.h"
 

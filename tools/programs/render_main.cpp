@@ -197,15 +197,7 @@ class Client {
 };
 
 RenderOptions render_options(const Options& o) {
-  RenderOptions r;
-  const auto size = tools::grid_from_string(o.size + "x1");
-  if (!size || size->x < 1 || size->y < 1 || size->x > 16384 || size->y > 16384) {
-    fail(Exit::usage, "--size: expected a size such as 960x540, at most 16384x16384, not \"{}\"",
-         o.size);
-  }
-  r.width = size->x;
-  r.height = size->y;
-  r.samples = o.samples;
+  RenderOptions r = picture_options(o.size, o.samples, "960x540");
   r.mode = o.mode == "direct" ? RenderMode::direct
            : o.mode == "gi"   ? RenderMode::gi
                               : RenderMode::full;

@@ -110,4 +110,18 @@ VolumeShape volume_of(const SceneFlags& flags, const Scene& scene) {
   return ddgi::spread(p.grid, p.box);
 }
 
+ddgi::RenderOptions picture_options(const std::string& size, std::uint32_t samples,
+                                    const char* example) {
+  const auto sides = tools::grid_from_string(size + "x1");
+  if (!sides || sides->x < 1 || sides->y < 1 || sides->x > 16384 || sides->y > 16384) {
+    tools::fail(Exit::usage, "--size: expected a size such as {}, at most 16384x16384, not \"{}\"",
+                example, size);
+  }
+  ddgi::RenderOptions options;
+  options.width = sides->x;
+  options.height = sides->y;
+  options.samples = samples;
+  return options;
+}
+
 }  // namespace gicodec::kinds

@@ -2,9 +2,11 @@
 #pragma once
 
 #include "common/command_line.h"
+#include "ddgi/client_renderer.h"
 #include "ddgi/scene.h"
 #include "ddgi/volume.h"
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -27,6 +29,10 @@ void add_scene_flags(tools::Command& app, SceneFlags& flags);
 void place_volume(const SceneFlags& flags, ddgi::Scene& scene);
 /// Grid and place of the flags, else of the scene.
 [[nodiscard]] ddgi::VolumeShape volume_of(const SceneFlags& flags, const ddgi::Scene& scene);
+/// Options of pictures of a size such as "960x540", at most 16384x16384. `example`: a size for the
+/// message. Throws tools::Error of Exit::usage.
+[[nodiscard]] ddgi::RenderOptions picture_options(const std::string& size, std::uint32_t samples,
+                                                  const char* example);
 /// "1,2.5,-3" with exactly `count` finite numbers. Throws tools::Error of Exit::usage.
 [[nodiscard]] std::vector<float> numbers(const std::string& text, std::size_t count,
                                          const char* what);

@@ -146,17 +146,4 @@ std::optional<Box3> parse_box(const std::string& text) {
   return box;
 }
 
-ddgi::RenderOptions render_options(const ClientFlags& o) {
-  ddgi::RenderOptions r;
-  const auto size = tools::grid_from_string(o.size + "x1");
-  if (!size || size->x < 1 || size->y < 1 || size->x > 16384 || size->y > 16384) {
-    fail(Exit::usage, "--size: expected a size such as 480x270, at most 16384x16384, not \"{}\"",
-         o.size);
-  }
-  r.width = size->x;
-  r.height = size->y;
-  r.samples = o.samples;
-  return r;
-}
-
 }  // namespace gicodec::streaming

@@ -195,7 +195,7 @@ Exit run(ClientFlags& o) {
     fail(Exit::usage, "--simulate takes no --record: one client records");
   tools::InputFiles inputs({o.token.file, trust.ca, o.scene.gltf});
   if (!o.record.empty()) check_recording(o.record, inputs, tools::overwrite_if(o.overwrite));
-  const ddgi::RenderOptions render = render_options(o);
+  const ddgi::RenderOptions render = kinds::picture_options(o.size, o.samples, "480x270");
   o.viewer.aspect = static_cast<float>(render.width) / static_cast<float>(render.height);
 
   const auto loaded = unless_interrupted([&] { return load(o, render); });
