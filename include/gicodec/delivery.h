@@ -3,7 +3,9 @@
 #pragma once
 
 #include <gicodec/api.h>
+#include <gicodec/backend.h>
 #include <gicodec/packet.h>
+#include <gicodec/settings.h>
 
 #include <compare>
 #include <cstdint>
@@ -27,6 +29,13 @@ struct StreamedTexture {
   /// Largest error of the published records themselves, as TextureEntry::largest_error. Clients
   /// learn the error of both together.
   float source_error = 0;
+  /// Codes the texture, with `settings`; null: ServerOptions has both. Must outlive the server.
+  /// Where a backend is_stateful(), a shared stream is one region unless ServerOptions cuts it, and
+  /// a client that missed an update waits for the next keyframe, which all get: every 16th update
+  /// at most. A lossy backend needs bounds of 0 above, and no client may have unicast delivery: all
+  /// hold what the backend's packets decode to.
+  const Backend* backend = nullptr;
+  BackendSettings settings = {};
 };
 
 /// What one update to a client may contain, in all textures together; 0: no limit. Unicast packets

@@ -157,6 +157,7 @@ bool BlockHistory::same_records(BlockId a, BlockId b) const noexcept {
 
 void BlockHistory::replace(BlockId id, std::span<const std::byte> records) noexcept {
   std::memcpy(records_.data() + id * block_bytes_, records.data(), block_bytes_);
+  if (use_ == Use::server) digests_[id] = checksum(records);
 }
 
 /// Collects numbers without holders, one for each block. release() cannot do this, since threads

@@ -1,4 +1,4 @@
-// A streaming server with HEVC: packets for each client, since a picture refers to the ones before.
+// A streaming server with HEVC: a stream of pictures for each client, or one for all.
 #include "../messages.h"
 #include "memory_sink.h"
 #include "support.h"
@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -31,19 +32,6 @@ ServerOptions server_options(const Backend& backend) {
   options.settings.preset = "ultrafast";
   options.proofs = true;
   return options;
-}
-
-/// Why a client that asks for shared packets is turned away, if it is.
-std::optional<Reason> refusal_of_shared(Server& server) {
-  auto client = *Client::create({.delivery = Delivery::shared});
-  const ConnectionId connection = *server.connect(0);
-  server.receive(connection, *client.hello(), 0);
-  for (const ServerEvent& event : server.take_events()) {
-    if (event.type == ServerEvent::Type::dropped) return event.reason;
-  }
-  server.drop(connection, Reason::dismissed);
-  static_cast<void>(server.take_events());
-  return std::nullopt;
 }
 
 TEST(HevcStreaming, ClientsHoldWhatTheServerThinks) {
@@ -158,31 +146,126 @@ TEST(HevcStreaming, RecordingsBeginWithKeyframes) {
   }
 }
 
-TEST(HevcStreaming, RefusesWhatPicturesCannotDo) {
-  const HevcBackend backend;
-  auto server = Server::create(server_options(backend));
-  ASSERT_TRUE(server.ok());
-  const VolumeDesc volume = probes_of({{"color", ddgi_irradiance(kGrid)}});
-  auto early = *Client::create({.delivery = Delivery::shared});
-  const ConnectionId connection = *server->connect(0);
-  server->receive(connection, *early.hello(), 0);
-  EXPECT_EQ(server->add_volume("volume", volume, {kGrid}).status(), Status::unsupported_backend);
-  EXPECT_EQ(server->volumes(), 0U);
-  server->drop(connection, Reason::dismissed);
-  static_cast<void>(server->take_events());
-  ASSERT_TRUE(server->add_volume("volume", volume, {kGrid}).ok());
-  EXPECT_EQ(refusal_of_shared(*server), Reason::full);
-  EXPECT_EQ(server->scroll(0, {1, 0, 0}), Status::unsupported_backend);
-  // When it is gone there is nothing that remembers.
-  ASSERT_EQ(server->remove_volume(0), Status::ok);
-  EXPECT_EQ(refusal_of_shared(*server), std::nullopt);
+/// A client of a shared stream.
+struct Watcher {
+  explicit Watcher(const Backend& backend)
+      : client(*Client::create({.backends = {&backend}, .delivery = Delivery::shared})) {}
 
+  void connect(Server& server, double now) {
+    connection = *server.connect(now);
+    server.receive(connection, *client.hello(), now);
+  }
+  /// Applies what came, or loses it with the connection.
+  void take(Server& server, double now, bool lost) {
+    for (const Message& message : joined(server.take_messages(connection))) {
+      if (!lost) {
+        ASSERT_EQ(client.receive(message), Status::ok);
+      }
+    }
+    for (const Message& reply : client.take_messages()) server.receive(connection, reply, now);
+    if (!lost) return;
+    server.disconnect(connection, now);
+    connect(server, now);
+  }
+  [[nodiscard]] std::span<const std::byte> texels() const {
+    return client.frame().volumes[0].textures[0].texels;
+  }
+
+  Client client;
+  ConnectionId connection = 0;
+};
+
+/// All share one stream of pictures: whoever comes late, or lost an update, begins with a keyframe,
+/// and holds bit by bit what the others hold.
+void share(const HevcBackend& backend, bool lossy) {
+  auto server = *Server::create({.backends = {&backend}, .proofs = true});
+  Texture texture(ddgi_irradiance(kGrid));
+  StreamedTexture streamed{.texture = "color", .backend = &backend};
+  streamed.settings.preset = "ultrafast";
+  ASSERT_TRUE(server
+                  .add_volume("volume", probes_of({{"color", texture.desc()}}), {kGrid},
+                              std::span(&streamed, 1))
+                  .ok());
+  std::vector<Watcher> watchers;
+  for (int i = 0; i < 3; ++i) watchers.emplace_back(backend);
+  watchers[0].connect(server, 0);
+  watchers[1].connect(server, 0);
+  Random random(1);
+  texture.fill(Fill::small, random);
+  constexpr int kUpdates = 50, kLate = 5, kLoses = 20;
+  std::vector<int> keyframes;
+  for (int update = 0; update < kUpdates; ++update) {
+    const double now = 0.1 * (update + 1);
+    if (update == kLate) watchers[2].connect(server, now);
+    for (std::uint32_t block = update % 2; block < kBlocks; block += 2) {
+      texture.fill_block(block, Fill::small, random);
+      texture.fill_band(block);
+    }
+    ASSERT_EQ(server.publish(0, 0, std::as_const(texture).view()), Status::ok);
+    ASSERT_EQ(server.update(now, now), Status::ok);
+    const auto packets = server.packets(watchers[0].connection);
+    if (std::ranges::any_of(packets, &OutgoingPacket::keyframe)) keyframes.push_back(update);
+    for (std::size_t i = 0; i < watchers.size(); ++i) {
+      if (i == 2 && update < kLate) continue;
+      watchers[i].take(server, now, i == 1 && update == kLoses);
+    }
+  }
+  const auto published = std::as_const(texture).view().bytes;
+  for (const Watcher& one : watchers) {
+    EXPECT_TRUE(std::ranges::equal(one.texels(), watchers[0].texels()));
+    EXPECT_EQ(std::ranges::equal(one.texels(), published), !lossy);
+    EXPECT_TRUE(one.client.consistent());
+    EXPECT_GE(one.client.statistics().proofs, 10U);
+    EXPECT_EQ(one.client.statistics().failed_proofs, 0U);
+    const float error = one.client.frame().volumes[0].textures[0].largest_error;
+    EXPECT_EQ(error, lossy ? std::numeric_limits<float>::infinity() : 0);
+  }
+  // The first; one for the late client and one after the loss, 16 updates apart.
+  ASSERT_EQ(keyframes.size(), 3U);
+  EXPECT_GE(keyframes[1], keyframes[0] + 16);
+  EXPECT_GE(keyframes[2], keyframes[1] + 16);
+  EXPECT_EQ(server.scroll(0, {1, 0, 0}), Status::unsupported_backend);
+}
+
+TEST(HevcStreaming, ClientsShareAStream) { share(HevcBackend(), false); }
+
+TEST(HevcStreaming, ClientsShareALossyStream) {
+  HevcSettings settings;
+  settings.packing = HevcPacking::luma;
+  settings.lossy_qp = 20;
+  share(HevcBackend(settings), true);
+}
+
+/// Unicast clients would each hold something else.
+TEST(HevcStreaming, LossyTexturesAreShared) {
   HevcSettings settings;
   settings.lossy_qp = 20;
   const HevcBackend lossy(settings);
-  auto other = Server::create(server_options(lossy));
-  ASSERT_TRUE(other.ok());
-  EXPECT_EQ(other->add_volume("volume", volume, {kGrid}).status(), Status::unsupported_backend);
+  auto server = *Server::create(server_options(lossy));
+  const VolumeDesc volume = probes_of({{"color", ddgi_irradiance(kGrid)}});
+  auto client = *Client::create();
+  const ConnectionId early = *server.connect(0);
+  server.receive(early, *client.hello(), 0);
+  EXPECT_EQ(server.add_volume("volume", volume, {kGrid}).status(), Status::unsupported_backend);
+  EXPECT_EQ(server.volumes(), 0U);
+  server.drop(early, Reason::dismissed);
+  static_cast<void>(server.take_events());
+  const StreamedTexture bounded{.texture = "color", .max_error = 1};
+  EXPECT_EQ(server.add_volume("volume", volume, {kGrid}, std::span(&bounded, 1)).status(),
+            Status::invalid_bound);
+  ASSERT_TRUE(server.add_volume("volume", volume, {kGrid}).ok());
+  const auto refusal = [&]() -> std::optional<Reason> {
+    auto late = *Client::create();
+    const ConnectionId connection = *server.connect(0);
+    server.receive(connection, *late.hello(), 0);
+    for (const ServerEvent& event : server.take_events()) {
+      if (event.type == ServerEvent::Type::dropped) return event.reason;
+    }
+    return std::nullopt;
+  };
+  EXPECT_EQ(refusal(), Reason::unicast_full);
+  ASSERT_EQ(server.remove_volume(0), Status::ok);
+  EXPECT_EQ(refusal(), std::nullopt);
 }
 
 }  // namespace

@@ -207,7 +207,7 @@ TEST(Attacks, LeaveHonestClientsTheirUpdates) {
     const std::size_t content =
         PathToServer::kBlocks * block_bytes(ddgi_irradiance(PathToServer::kGrid));
     EXPECT_LT(attack.most_memory,
-              2 * (32 + 48) * content + kMaxClients * 300 * std::size_t{PathToServer::kBlocks});
+              2 * (48 + 48) * content + kMaxClients * 300 * std::size_t{PathToServer::kBlocks});
     EXPECT_LT(attack.most_unsent, kMaxClients * 3 * content);
     EXPECT_EQ(m.dropped + m.gaps + m.failed_proofs, 0U);
     EXPECT_FALSE(attack.dropped.empty());

@@ -9,10 +9,11 @@ shift 6
 scene=(--gltf "$room")
 traced=("${scene[@]}" --kind "$kind")
 settings=("$@")
-streamed=("${traced[@]}")
+# With a loss all clients hold what one stream decodes to.
+deliveries=(unicast shared) delivered=()
 for setting in "$@"; do
   traced+=(--set "$setting")
-  [[ "$setting" == qp=* ]] || streamed+=(--set "$setting")  # of containers alone
+  [[ "$setting" == qp=* ]] && deliveries=(shared) delivered=(--delivery shared)
 done
 # How clients draw it.
 drawing=()
@@ -44,19 +45,25 @@ live() {
   local server culling clients delivery
   culling=()
   [ "$kind" = voxels ] && culling=(--no-culling)
-  serve live "${streamed[@]}" "${culling[@]}" --wait 2 --rate 20 --updates 24 --lockstep
+  serve live "${traced[@]}" "${culling[@]}" --wait ${#deliveries[@]} --rate 20 --updates 24 --lockstep
   server=$last
+  if [ ${#deliveries[@]} -eq 1 ]; then
+    tool 4 refused-live "$bin/gi-client" --connect "127.0.0.1:$port" "${scene[@]}" --delivery unicast
+    says refused-live "--delivery shared"
+  fi
   clients=()
-  for delivery in unicast shared; do
+  for delivery in "${deliveries[@]}"; do
     start "live-$delivery" "$bin/gi-client" --connect "127.0.0.1:$port" "${scene[@]}" --size 48x27 \
       --samples 1 --subscribe all --delivery $delivery --updates 16 --frames 1 -o "pictures-$delivery" \
       --record "$delivery.gic" --expect-proofs "${drawing[@]}"
     clients+=("$last")
   done
-  ends 0 "${clients[0]}" live-unicast
-  ends 0 "${clients[1]}" live-shared
+  for delivery in "${deliveries[@]}"; do
+    ends 0 "${clients[0]}" "live-$delivery"
+    clients=("${clients[@]:1}")
+  done
   ends 0 $server live
-  for delivery in unicast shared; do
+  for delivery in "${deliveries[@]}"; do
     [ -s "pictures-$delivery/frame.0000.png" ] || failed "$kind: no picture of $delivery"
     says "live-$delivery" "([1-9][0-9]* of [0-9]* held)"
     tool 0 "verify-$delivery" "$gicodec" verify "$delivery.gic"
@@ -66,11 +73,11 @@ live() {
 # Packets are lost and late, and the budget is small: every state is exact all the same.
 lossy() {
   local server relay delivery
-  serve lossy "${streamed[@]}" --rate 20 --max-kbps-per-client 4000
+  serve lossy "${traced[@]}" --rate 20 --max-kbps-per-client 4000
   server=$last
   relay relay "$port" --loss 5 --delay 20 --jitter 10 --seed 7
   relay=$last
-  for delivery in unicast shared; do
+  for delivery in "${deliveries[@]}"; do
     start "lossy-$delivery" "$bin/gi-client" --connect "127.0.0.1:$port" "${scene[@]}" \
       --subscribe all --delivery $delivery --updates 10 --expect-proofs
     ends 0 $last "lossy-$delivery"
@@ -83,7 +90,8 @@ lossy() {
 # No more blocks in an update than a budget has room for, and no fewer as long as some have not come.
 budget() {
   local server
-  serve budget "${streamed[@]}" --wait 1
+  [ ${#deliveries[@]} -gt 1 ] || return 0  # a picture is sent whole
+  serve budget "${traced[@]}" --wait 1
   server=$last
   start bundles "$bin/gi-client" --connect "127.0.0.1:$port" "${scene[@]}" --subscribe all \
     --budget-blocks 8 --updates 10 --record bundles.gic --expect-proofs
@@ -107,7 +115,7 @@ EOF
 # nobody's view.
 other() {
   local server extreme
-  serve other "${streamed[@]}"
+  serve other "${traced[@]}"
   server=$last
   start extreme "$bad_peer" viewpoints "127.0.0.1:$port"
   extreme=$last
@@ -120,7 +128,7 @@ other() {
   says unset "have no setting \"nothing\"; there are: "
   ends 0 $extreme extreme
   start honest "$bin/gi-client" --connect "127.0.0.1:$port" "${scene[@]}" --subscribe all --updates 3 \
-    --expect-proofs
+    --expect-proofs "${delivered[@]}"
   ends 0 $last honest
   kill $server
   ends 0 $server other
@@ -162,8 +170,8 @@ container() {
     photons*) says info "room for [0-9]* records a block, of which the first so many exist" ;;
     *qp=*)
       says info "hevc.*, LOSSY ("
-      tool 2 served "$bin/gi-server" "${traced[@]}" --updates 1
-      says served "qp is for containers"
+      tool 2 served "$bin/gi-server" "${traced[@]}" --updates 1 --max-error irradiance=2
+      says served "exclude each other"
       ;;
   esac
   tool 0 json "$gicodec" info traced.gic --format json

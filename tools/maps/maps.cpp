@@ -25,8 +25,7 @@ constexpr std::array kSettings{
     Setting{"rays", "0", "per texel or basis, 0 to 65536; 0: 64 per texel, 256 per basis"},
     kinds::rays_turned("1"),
     kinds::kRaysAnew,
-    Setting{"qp", "none",
-            "way=map in containers: LOSES BITS, texels in 10 bits by HEVC, quantiser 0 to 51"},
+    Setting{"qp", "none", "way=map: LOSES BITS, texels in 10 bits by HEVC, quantiser 0 to 51"},
     kinds::kWarmup};
 
 constexpr std::array<std::string_view, 2> kWays{"map", "bases"};

@@ -1,5 +1,6 @@
 // gi-server: streams the light of a scene to clients, of any kind, traced live or played.
 #include "clock.h"
+#include "common/backend_flags.h"
 #include "common/error_flags.h"
 #include "common/program.h"
 #include "ddgi/scene_id.h"
@@ -99,9 +100,27 @@ float max_error(const ServerFlags& o, const TextureGroup& group, const NamedText
   return 0;
 }
 
+/// The backends of textures that lose bits by a quantiser; they outlive the server.
+using LossyBackends = std::vector<std::unique_ptr<const Backend>>;
+
+/// Streams a texture by HEVC with a loss.
+void use_quantiser(const ServerFlags& o, int quantiser, StreamedTexture& texture,
+                   LossyBackends& lossy) {
+  if (texture.max_error > 0)
+    fail(Exit::usage,
+         "texture {}: --set qp and --max-error exclude each other; --max-error {}=0 leaves it to "
+         "the quantiser",
+         texture.texture, texture.texture);
+  lossy.push_back(tools::lossy_hevc(quantiser));
+  texture.backend = lossy.back().get();
+  texture.settings.preset = "veryfast";  // in real time
+  texture.settings.isa = o.server.settings.isa;
+}
+
 /// The options of all textures; colour and visibility of probes have their own.
 std::vector<std::vector<StreamedTexture>> streamed(const ServerFlags& o,
-                                                   const kinds::Source& source) {
+                                                   const kinds::Source& source,
+                                                   LossyBackends& lossy) {
   std::vector<std::vector<StreamedTexture>> all;
   std::vector<std::string> names;
   for (const SourceVolume& volume : source.volumes) {
@@ -112,7 +131,10 @@ std::vector<std::vector<StreamedTexture>> streamed(const ServerFlags& o,
         const bool color = texture.desc.record.count >= 3;
         if (!is_probes(volume)) {
           textures.push_back({texture.name, 1, 0, max_error(o, group, texture),
-                              volume.errors.empty() ? 0 : volume.errors[place++]});
+                              volume.errors.empty() ? 0 : volume.errors[place]});
+          if (!volume.quantisers.empty() && volume.quantisers[place] >= 0)
+            use_quantiser(o, volume.quantisers[place], textures.back(), lossy);
+          ++place;
           names.push_back(texture.name);
           continue;
         }
@@ -266,7 +288,8 @@ Exit run(ServerFlags& o) {
   auto& [source, views] = *loaded;
   if (!o.play.empty()) check_memory(o, source);
   o.server.scene = source.scene;
-  const auto textures = streamed(o, source);
+  LossyBackends lossy;
+  const auto textures = streamed(o, source, lossy);
   for (const SourceVolume& volume : source.volumes) check_backend(o, volume);
   // Per update an Acknowledge and a Viewpoint, and some more.
   o.server.limits.messages_per_second =

@@ -13,10 +13,6 @@ using tools::Exit;
 using tools::fail;
 
 void check_backend(const ServerFlags& o, const SourceVolume& volume) {
-  if (!volume.quantisers.empty())
-    fail(Exit::usage,
-         "--set qp is for containers, which --play streams: clients hold what is published bit by "
-         "bit, or within --max-error");
   const auto all = built_in_backends();
   const auto backend = std::ranges::find(all, o.backend, &Backend::name);
   if (backend == all.end()) return;

@@ -43,15 +43,36 @@ bool Bundle::outdated(std::span<const UpdateStream> streams, std::uint32_t block
   return false;
 }
 
-Result<StreamWorker*> Distributor::State::worker(unsigned thread, const TextureDesc& desc) {
-  auto& of_thread = workers[thread];
-  for (const auto& known : of_thread) {
-    if (known->desc == desc) return known.get();
+Result<BackendEncoder*> Distributor::State::encoder(
+    unsigned thread, const ServedTexture& texture, const UpdateStream& stream,
+    const std::vector<std::unique_ptr<BackendEncoder>>& own, std::size_t place) {
+  if (!own.empty() && own[place] != nullptr) return own[place].get();
+  const ServedTexture* const of = texture.options.own_backend ? &texture : nullptr;
+  auto& encoders = workers[thread].encoders;
+  for (const auto& one : encoders) {
+    if (one.texture == of && one.desc == stream.desc()) return one.encoder.get();
   }
-  auto encoder = backend->make_encoder(desc, options.settings);
-  if (!encoder) return encoder.status();
-  of_thread.push_back(std::make_unique<StreamWorker>(StreamWorker{desc, *std::move(encoder)}));
-  return of_thread.back().get();
+  auto made = texture.options.backend->make_encoder(stream.desc(), texture.options.settings);
+  if (!made) return made.status();
+  encoders.push_back({of, stream.desc(), *std::move(made)});
+  return encoders.back().encoder.get();
+}
+
+/// Makes an encoder for each stream of a stateful texture.
+Status Distributor::State::make_encoders(const Bundle& bundle,
+                                         std::span<const UpdateStream> streams,
+                                         std::vector<std::unique_ptr<BackendEncoder>>& out) const {
+  if (!bundle.is_stateful) return Status::ok;
+  std::vector<std::unique_ptr<BackendEncoder>> encoders(streams.size());
+  for (std::size_t i = 0; i < streams.size(); ++i) {
+    const ServedTexture& texture = *bundle.textures[i];
+    if (!texture.options.is_stateful) continue;
+    auto made = texture.options.backend->make_encoder(streams[i].desc(), texture.options.settings);
+    if (!made) return made.status();
+    encoders[i] = *std::move(made);
+  }
+  out = std::move(encoders);
+  return Status::ok;
 }
 
 Distributor::Distributor(std::unique_ptr<State> state) noexcept : state_(std::move(state)) {}
@@ -139,9 +160,9 @@ Status Distributor::publish(std::uint16_t volume, std::uint8_t texture, ConstTex
       if (!is_sound(history.desc(), presence)) return Status::presence_invalid;
     }
     ServedVolume& of = *state_->volumes[volume];
-    const bool tells = at.bundle->group->presence == at.place;
+    const bool is_presence = at.bundle->group->presence == at.place;
     before.clear();
-    if (of.linked || tells) before.assign(history.current().begin(), history.current().end());
+    if (of.linked || is_presence) before.assign(history.current().begin(), history.current().end());
     if (of.linked) {
       const std::size_t ids = 1 + std::size_t{*std::max_element(before.begin(), before.end())};
       served.last_current.resize(std::max(served.last_current.size(), ids));
@@ -152,14 +173,16 @@ Status Distributor::publish(std::uint16_t volume, std::uint8_t texture, ConstTex
       if (history.current()[block] == before[block]) continue;
       if (of.linked) of.note_change(*at.bundle, served, block, before[block], state_->updates);
       for (const auto& other : at.bundle->textures) {
-        if (tells && other->history.desc().presence != Presence::all) other->unread[block] = 1;
+        if (is_presence && other->history.desc().presence != Presence::all)
+          other->unread[block] = 1;
       }
     }
     served.published = true;
     served.presence_changed = false;
     for (const std::uint32_t block : blocks) served.unread[block] = 0;
     for (const auto& other : at.bundle->textures) {
-      if (tells && other->history.desc().presence != Presence::all) other->presence_changed = true;
+      if (is_presence && other->history.desc().presence != Presence::all)
+        other->presence_changed = true;
     }
     return Status::ok;
   });
@@ -206,7 +229,7 @@ Status Distributor::update() {
     ++state.updates;
     for (const auto& volume : state.volumes) volume->choose_due(state.updates);
     state.gather_subscribers();
-    state.allot_extras();
+    state.allot_catch_ups();
     note(guarded([&]() -> Status {
       for_each_item(state.options.threads, jobs.size(), [&](unsigned thread, std::size_t i) {
         const Job& job = jobs[i];
@@ -247,7 +270,7 @@ WrittenBlocks Distributor::written() const noexcept {
   blocks.all = blocks.unicast;
   state_->for_each_region([&](const ServedVolume&, const Bundle&, const SharedRegion& region) {
     blocks.all += region.written;
-    blocks.unicast += region.extra;
+    blocks.unicast += region.for_few;
   });
   return blocks;
 }
@@ -269,8 +292,8 @@ std::size_t Distributor::memory() const noexcept {
       for (const StreamState& state : lagging.states) bytes += sizeof state + state.memory();
     }
   });
-  for (const auto& of_thread : state_->workers) {
-    for (const auto& worker : of_thread) bytes += sizeof *worker;
+  for (const StreamWorker& worker : state_->workers) {
+    bytes += sizeof worker + worker.encoders.capacity() * sizeof worker.encoders[0];
   }
   return bytes;
 }

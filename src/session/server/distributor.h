@@ -31,7 +31,7 @@ struct DistributorOptions {
   bool all_visible = false;  ///< clients see everything until set_visible(); false: nothing
   /// Packets of a texture that a client may leave unacknowledged and still revert by resume(): one
   /// an update, two if blocks moved.
-  std::uint32_t max_unacknowledged = 32;
+  std::uint32_t max_unacknowledged = 48;
 };
 
 struct ServedVolume;

@@ -39,19 +39,16 @@ Status Distributor::State::add_volume_to(ServedClient& client, ServedVolume& vol
       client.subscriptions[id].emplace_back(bundle->regions.size() * bundle->textures.size());
       continue;
     }
-    client.unicast.push_back({&volume, bundle.get(), {}, {}, {}});
+    client.unicast.push_back({&volume, bundle.get(), {}, {}});
     UnicastBundle& unicast = client.unicast.back();
     unicast.pending_since.resize(block_count(bundle->desc()));
     for (const auto& texture : bundle->textures) {
-      const TextureDesc& desc = texture->history.desc();
-      unicast.streams.emplace_back(texture->history, desc, std::vector<std::uint32_t>(),
-                                   PacketChain{backend->id(), texture->id},
-                                   options.max_unacknowledged);
-      if (!is_stateful) continue;
-      auto encoder = backend->make_encoder(desc, options.settings);
-      if (!encoder) return encoder.status();
-      unicast.encoders.push_back(*std::move(encoder));
+      unicast.streams.emplace_back(
+          texture->history, texture->history.desc(), std::vector<std::uint32_t>(),
+          PacketChain{texture->options.backend->id(), texture->id}, options.max_unacknowledged);
     }
+    const Status status = make_encoders(*bundle, unicast.streams, unicast.encoders);
+    if (status != Status::ok) return status;
   }
   if (client.delivery == Delivery::shared) set_joins(client, volume);
   return Status::ok;
@@ -69,15 +66,17 @@ void Distributor::State::drop_volume_of(ServedClient& client, const ServedVolume
   if (id < client.subscriptions.size()) client.subscriptions[id].clear();
 }
 
-bool Distributor::State::any_shared() const noexcept {
+bool Distributor::State::any_unicast() const noexcept {
   return std::any_of(clients.begin(), clients.end(),
-                     [](const auto& entry) { return entry.second->delivery == Delivery::shared; });
+                     [](const auto& entry) { return entry.second->delivery == Delivery::unicast; });
 }
 
 Result<ClientId> Distributor::connect(Delivery delivery, Budget budget) {
   return guarded([&]() -> Result<ClientId> {
     if (state_->clients.size() >= state_->options.max_clients) return Status::limit_exceeded;
-    if (delivery == Delivery::shared && state_->is_stateful) return Status::unsupported_backend;
+    const bool lossy = std::any_of(state_->volumes.begin(), state_->volumes.end(),
+                                   [](const auto& volume) { return volume->is_lossy(); });
+    if (delivery == Delivery::unicast && lossy) return Status::unsupported_backend;
     const ClientId id = state_->next_client;
     auto client = std::make_unique<ServedClient>(id);
     client->delivery = delivery;
@@ -143,13 +142,14 @@ Status Distributor::resume(ClientId client, StreamId stream, std::uint32_t seque
     const auto subscriptions = state_->find_subscriptions(*found, stream);
     if (subscriptions.empty()) return Status::invalid_argument;
     Subscription& subscription = subscriptions[state_->find(stream.volume, stream.texture).place];
-    subscription = {subscription.subscribed, sequence, checksum, subscription.since};
+    subscription = {subscription.subscribed, sequence, checksum, subscription.first_update};
     return Status::ok;
   }
   UpdateStream* const unicast = state_->find(*found, stream);
   if (unicast == nullptr) return Status::invalid_argument;
   // A stateful backend cannot go back to an earlier state.
-  if (state_->is_stateful && sequence != unicast->sequence()) {
+  const bool is_stateful = state_->find(stream.volume, stream.texture).bundle->is_stateful;
+  if (is_stateful && sequence != unicast->sequence()) {
     unicast->request_keyframe();
   } else {
     static_cast<void>(unicast->resume(sequence, checksum));
@@ -250,7 +250,8 @@ void Distributor::State::set_joins(ServedClient& client, const ServedVolume& vol
       const auto& blocks = bundle.region_blocks[region];
       const bool seen = !visible.empty() && std::any_of(blocks.begin(), blocks.end(), is_seen);
       for (Subscription& subscription : client.subscriptions_of(volume.id(), l, bundle, region)) {
-        if (!subscription.subscribed) subscription.since = static_cast<std::uint32_t>(updates) + 1;
+        if (!subscription.subscribed)
+          subscription.first_update = static_cast<std::uint32_t>(updates) + 1;
         subscription.subscribed = needed || seen;
       }
     }

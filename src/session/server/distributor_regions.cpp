@@ -40,9 +40,9 @@ BlockMask missing_of(const SharedRegion& shared, const Lagging* from,
 Status Distributor::State::update_region(ServedVolume& volume, Bundle& bundle, std::uint32_t region,
                                          unsigned thread) {
   SharedRegion& shared = bundle.regions[region];
-  shared.written = shared.extra = 0;
-  const auto served = [](const Lagging& lagging) { return lagging.subscribers.extra; };
-  if (shared.up_to_date.served == 0 && !shared.waiting.extra &&
+  shared.written = shared.for_few = 0;
+  const auto served = [](const Lagging& lagging) { return lagging.subscribers.allotted; };
+  if (shared.up_to_date.served == 0 && !shared.waiting.allotted &&
       std::none_of(shared.lagging.begin(), shared.lagging.end(), served)) {
     return Status::ok;
   }
@@ -64,13 +64,13 @@ Status Distributor::State::update_region(ServedVolume& volume, Bundle& bundle, s
       shared.dependencies = std::move(shared.dependencies_changed ? with_earlier : dependencies);
     }
   }
-  if (shared.streams[0].keyframe_next()) return Status::ok;
+  if (bundle.is_stateful || shared.streams[0].keyframe_next()) return Status::ok;
   Status first = Status::ok;
   const auto note = [&first](Status status) {
     if (first == Status::ok) first = status;
   };
-  const auto make_up = [&](const Lagging* from, Subscribers& subscribers) {
-    if (!subscribers.extra || !subscribers.packets.empty()) return;
+  const auto make_up = [&](const Lagging* from, SubscriberGroup& subscribers) {
+    if (!subscribers.allotted || !subscribers.packets.empty()) return;
     std::vector<Written> written;
     note(guarded(
         [&] { return write(bundle, shared, from, nullptr, thread, written, subscribers); }));
@@ -96,7 +96,7 @@ std::vector<std::uint32_t> Distributor::State::outdated_blocks(const ServedVolum
 /// the client on to the blocks `next`, or, if null, to the streams' state.
 Status Distributor::State::write(const Bundle& bundle, SharedRegion& shared, const Lagging* from,
                                  const std::vector<std::uint32_t>* next, unsigned thread,
-                                 std::vector<Written>& written, Subscribers& subscribers) {
+                                 std::vector<Written>& written, SubscriberGroup& subscribers) {
   std::vector<SharedPacket> packets;
   const auto blocks = next == nullptr ? std::span<const std::uint32_t>() : std::span(*next);
   const BlockMask missing = missing_of(shared, from, blocks);
@@ -104,13 +104,12 @@ Status Distributor::State::write(const Bundle& bundle, SharedRegion& shared, con
   for (std::size_t i = 0; i < shared.streams.size(); ++i) {
     const UpdateStream& stream = shared.streams[i];
     const StreamState* const held = from == nullptr ? nullptr : &from->states[i];
-    const auto found = worker(thread, stream.desc());
+    const auto found = encoder(thread, *bundle.textures[i], stream, shared.encoders, i);
     if (!found) return found.status();
-    BackendEncoder& encoder = *(*found)->encoder;
-    PacketWriter& writer = (*found)->writer;
+    PacketWriter& writer = workers[thread].writer;
     const Status status =
-        next == nullptr ? stream.catch_up(held, missing, encoder, writer, written[i])
-                        : stream.write_from(held, blocks, missing, encoder, writer, written[i]);
+        next == nullptr ? stream.catch_up(held, missing, **found, writer, written[i])
+                        : stream.write_from(held, blocks, missing, **found, writer, written[i]);
     if (status != Status::ok) return status;
     for (WrittenPacket& one : written[i].packets()) {
       const auto count = static_cast<std::uint32_t>(one.contents.blocks.size());
@@ -120,7 +119,7 @@ Status Distributor::State::write(const Bundle& bundle, SharedRegion& shared, con
   }
   for (const SharedPacket& packet : packets) {
     shared.written += packet.blocks;
-    if (next == nullptr) shared.extra += packet.blocks;
+    if (next == nullptr) shared.for_few += packet.blocks;
   }
   subscribers.packets = std::move(packets);
   return Status::ok;
@@ -136,6 +135,9 @@ Status Distributor::State::advance(const ServedVolume& volume, const Bundle& bun
       std::none_of(shared.lagging.begin(), shared.lagging.end(), anybody)) {
     for (UpdateStream& stream : shared.streams) stream.request_keyframe();
   }
+  if (bundle.is_stateful && shared.waiting.allotted) {
+    for (UpdateStream& stream : shared.streams) stream.request_keyframe();
+  }
   const bool known = !shared.streams[0].keyframe_next();
   const auto blocks = outdated_blocks(volume, bundle, shared);
   if (blocks.empty() && known) return Status::ok;
@@ -147,9 +149,9 @@ Status Distributor::State::advance(const ServedVolume& volume, const Bundle& bun
     for (const UpdateStream& stream : shared.streams) before.states.push_back(stream.state());
     shared.lagging.push_back(std::move(before));
   }
-  const auto needs_some = [](const Lagging& one) { return one.subscribers.extra; };
+  const auto needs_some = [](const Lagging& one) { return one.subscribers.allotted; };
   auto from = shared.lagging.end();
-  if (shared.up_to_date.served > 0) {
+  if (known && shared.up_to_date.served > 0) {
     --from;
   } else if (known) {
     from = std::find_if(shared.lagging.begin(), shared.lagging.end(), needs_some);
@@ -162,9 +164,14 @@ Status Distributor::State::advance(const ServedVolume& volume, const Bundle& bun
   });
   if (status != Status::ok) {
     if (known) shared.lagging.pop_back();
+    // Stateful encoders have seen blocks that nobody gets.
+    if (bundle.is_stateful) {
+      for (UpdateStream& stream : shared.streams) stream.request_keyframe();
+    }
     return status;
   }
   if (known) shared.lagging.back().subscribers.all = std::exchange(shared.up_to_date.all, 0);
+  if (!known) shared.keyframe_turn = bundle.turn(updates);
   for (std::size_t i = 0; i < written.size(); ++i) shared.streams[i].commit(written[i]);
   return Status::ok;
 }

@@ -14,6 +14,8 @@ namespace {
 constexpr std::size_t kMaxLagging = 12;
 /// Catch-ups of a region in one update: more than four groups at all rates need on average.
 constexpr std::size_t kMaxCatchUps = 4;
+/// Turns from a keyframe of a stateful backend to the next that lagging clients may cause.
+constexpr std::uint64_t kKeyframeTurns = 16;
 /// An update may exceed the budget, which limits the average, by this factor.
 constexpr float kBurst = 2;
 
@@ -42,8 +44,8 @@ auto find_lagging(Shared& shared, std::span<const Subscription> subscriptions) n
                       [&](const Lagging& one) { return holds(subscriptions, one.states); });
 }
 
-Subscribers& subscribers_of(SharedRegion& shared,
-                            std::span<const Subscription> subscriptions) noexcept {
+SubscriberGroup& group_of(SharedRegion& shared,
+                          std::span<const Subscription> subscriptions) noexcept {
   if (is_current(shared, subscriptions)) return shared.up_to_date;
   const auto lagging = find_lagging(shared, subscriptions);
   return lagging != shared.lagging.end() ? lagging->subscribers : shared.waiting;
@@ -90,7 +92,7 @@ void Distributor::State::gather_subscribers() noexcept {
     for_each_subscription(
         client, [&](const ServedVolume&, const Bundle& bundle, std::uint32_t, std::size_t place,
                     std::span<const Subscription> subscriptions, SharedRegion& shared) {
-          Subscribers& subscribers = subscribers_of(shared, subscriptions);
+          SubscriberGroup& subscribers = group_of(shared, subscriptions);
           ++subscribers.all;
           if (!client.suspended && client.rate.turn(bundle.turn(updates), place))
             ++subscribers.served;
@@ -100,20 +102,24 @@ void Distributor::State::gather_subscribers() noexcept {
 
 /// Chooses the snapshots and catch-ups within the block limit: oldest states first, regions in an
 /// order that differs from update to update.
-void Distributor::State::allot_extras() noexcept {
+void Distributor::State::allot_catch_ups() noexcept {
   std::size_t regions = 0;
   for_each_region([&](auto&&...) { ++regions; });
   const std::size_t start = spread(updates, regions);
   std::uint64_t left = unicast_block_limit == 0 ? UINT64_MAX : unicast_block_limit;
-  const auto allot = [&](Subscribers& subscribers, std::uint64_t blocks) {
+  const auto allot = [&](SubscriberGroup& subscribers, std::uint64_t blocks) {
     if (subscribers.served == 0 || left == 0) return false;
     left -= std::min(left, blocks);
-    return subscribers.extra = true;
+    return subscribers.allotted = true;
   };
   for (const bool wrapped : {false, true}) {
     std::size_t place = 0;
     for_each_region([&](const ServedVolume&, const Bundle& bundle, SharedRegion& shared) {
       if ((place++ < start) != wrapped) return;
+      if (bundle.is_stateful && shared.keyframe_turn != 0 &&
+          bundle.turn(updates) - shared.keyframe_turn < kKeyframeTurns) {
+        return;
+      }
       const std::uint64_t blocks = std::uint64_t{shared.streams[0].size()} * bundle.textures.size();
       std::size_t catch_ups = 0;
       for (Lagging& lagging : shared.lagging) {
@@ -147,9 +153,9 @@ bool Distributor::State::holds_dependencies(
     ServedClient& client, const ServedVolume& volume, const Bundle& bundle,
     const SharedRegion& dependent, std::span<const Subscription> subscriptions) const noexcept {
   if (dependent.dependencies.empty()) return true;
-  const auto since = find_lagging(dependent, subscriptions);
-  const std::uint32_t first =
-      since == dependent.lagging.end() ? subscriptions[0].since : since->last_current + 1;
+  const auto earlier = find_lagging(dependent, subscriptions);
+  const std::uint32_t first = earlier == dependent.lagging.end() ? subscriptions[0].first_update
+                                                                 : earlier->last_current + 1;
   const auto is_recent = [&](const SharedRegion& shared, std::span<const Subscription> held) {
     if (is_current(shared, held)) return shared.last_current(updates) >= first;
     const auto lagging = find_lagging(shared, held);
@@ -177,7 +183,7 @@ Status Distributor::State::hand_out_regions(ServedClient& client) noexcept {
                   std::span<const Subscription> subscriptions, SharedRegion& shared) {
         places = place + 1;
         if (!client.rate.turn(bundle.turn(updates), place)) return;
-        packets += subscribers_of(shared, subscriptions).packets.size();
+        packets += group_of(shared, subscriptions).packets.size();
       });
   const Status room = guarded([&]() -> Status {
     client.out.reserve(packets);
@@ -196,7 +202,7 @@ Status Distributor::State::hand_out_regions(ServedClient& client) noexcept {
                                       std::span<Subscription> subscriptions, SharedRegion& shared) {
       if ((place < start) != wrapped || !client.rate.turn(bundle.turn(updates), place)) return;
       ++turns;
-      Subscribers& subscribers = subscribers_of(shared, subscriptions);
+      SubscriberGroup& subscribers = group_of(shared, subscriptions);
       if (subscribers.packets.empty()) return;
       std::size_t size = 0;
       for (const SharedPacket& one : subscribers.packets) size += one.packet->size();
@@ -239,8 +245,10 @@ void Distributor::State::forget_subscribers() noexcept {
     return a.subscribers.all < b.subscribers.all;
   };
   const auto nobody = [](const Lagging& one) { return one.subscribers.all == 0; };
-  for_each_region([&](const ServedVolume&, const Bundle&, SharedRegion& shared) {
+  for_each_region([&](const ServedVolume&, const Bundle& bundle, SharedRegion& shared) {
     auto& lagging = shared.lagging;
+    // No packet leads from an earlier state of a stateful encoder to a later one.
+    if (bundle.is_stateful) lagging.clear();
     lagging.erase(std::remove_if(lagging.begin(), lagging.end(), nobody), lagging.end());
     // Drops the oldest of the states with fewest clients, which then get snapshots.
     if (lagging.size() > kMaxLagging) {

@@ -15,10 +15,14 @@
 
 namespace gicodec {
 
-/// What one thread needs to write packets of one description.
+/// What one thread needs to write packets.
 struct StreamWorker {
-  TextureDesc desc;
-  std::unique_ptr<BackendEncoder> encoder;
+  struct Stateless {
+    const ServedTexture* texture;  ///< null: of any with the server's backend
+    TextureDesc desc;
+    std::unique_ptr<BackendEncoder> encoder;
+  };
+  std::vector<Stateless> encoders = {};
   PacketWriter writer = {};
 };
 
@@ -38,7 +42,8 @@ struct UnicastBundle {
   Bundle* bundle;
   std::vector<UpdateStream> streams;         ///< by texture
   std::vector<std::uint32_t> pending_since;  ///< update since which a block is pending; 0 if not
-  std::vector<std::unique_ptr<BackendEncoder>> encoders;  ///< only where the backend is stateful
+  /// By texture, null where the backend is not stateful; empty where none is.
+  std::vector<std::unique_ptr<BackendEncoder>> encoders = {};
 
   /// The last update with the contents that the client holds of a block; 0: it holds none.
   [[nodiscard]] std::uint32_t last_current(std::uint32_t block,
@@ -49,7 +54,7 @@ struct UnicastBundle {
 struct Subscription {
   bool subscribed = false;
   std::uint32_t sequence = 0, checksum = 0;
-  std::uint32_t since = 0;  ///< the first update after it subscribed
+  std::uint32_t first_update = 0;  ///< after it subscribed
 };
 
 /// The blocks that were pending longest for a client when all its blocks were last examined. While
@@ -144,13 +149,22 @@ struct Reading {
 };
 
 struct Distributor::State {
-  Result<StreamWorker*> worker(unsigned thread, const TextureDesc& desc);
+  /// The encoder of a stream: its own of `own`, or the thread's.
+  Result<BackendEncoder*> encoder(unsigned thread, const ServedTexture& texture,
+                                  const UpdateStream& stream,
+                                  const std::vector<std::unique_ptr<BackendEncoder>>& own,
+                                  std::size_t place);
+  Status make_encoders(const Bundle& bundle, std::span<const UpdateStream> streams,
+                       std::vector<std::unique_ptr<BackendEncoder>>& out) const;
+  /// The options of each texture, by texture id.
+  [[nodiscard]] Result<std::vector<TextureOptions>> texture_options(
+      const VolumeDesc& volume, std::span<const StreamedTexture> streamed) const;
   Status add_texture(ServedVolume& volume, std::uint8_t group_id, const NamedTexture& texture,
-                     const StreamedTexture& streamed);
-  Status add_bundles(ServedVolume& volume, std::span<const StreamedTexture> options);
+                     TextureOptions settings);
+  Status add_bundles(ServedVolume& volume, std::span<const TextureOptions> textures);
   Status add_volume_to(ServedClient& client, ServedVolume& volume);
   static void drop_volume_of(ServedClient& client, const ServedVolume& volume) noexcept;
-  [[nodiscard]] bool any_shared() const noexcept;
+  [[nodiscard]] bool any_unicast() const noexcept;
   void forget_interest(const ServedVolume& volume) noexcept;
   void refresh_dependencies();
   void refresh_interest();
@@ -179,7 +193,7 @@ struct Distributor::State {
   template <typename Visit>
   void for_each_subscription(ServedClient& client, const Visit& visit) noexcept;
   void gather_subscribers() noexcept;
-  void allot_extras() noexcept;
+  void allot_catch_ups() noexcept;
   [[nodiscard]] std::vector<std::uint32_t> outdated_blocks(const ServedVolume& volume,
                                                            const Bundle& bundle,
                                                            const SharedRegion& shared) const;
@@ -187,7 +201,7 @@ struct Distributor::State {
                  unsigned thread);
   Status write(const Bundle& bundle, SharedRegion& shared, const Lagging* from,
                const std::vector<std::uint32_t>* next, unsigned thread,
-               std::vector<Written>& written, Subscribers& subscribers);
+               std::vector<Written>& written, SubscriberGroup& subscribers);
   Status hand_out_regions(ServedClient& client) noexcept;
   [[nodiscard]] bool holds_dependencies(ServedClient& client, const ServedVolume& volume,
                                         const Bundle& bundle, const SharedRegion& dependent,
@@ -205,13 +219,12 @@ struct Distributor::State {
   DistributorOptions options;
   const Backend* backend = nullptr;
   Reading reading;
-  bool is_stateful = false;  ///< of the backend's encoders
   std::vector<std::unique_ptr<ServedVolume>> volumes;
   std::map<ClientId, std::unique_ptr<ServedClient>> clients;
   ClientId next_client = 1;
   std::uint64_t updates = 0;
-  std::uint32_t unicast_block_limit = 0;                            ///< 0: no limit
-  std::vector<std::vector<std::unique_ptr<StreamWorker>>> workers;  ///< by thread
+  std::uint32_t unicast_block_limit = 0;  ///< 0: no limit
+  std::vector<StreamWorker> workers;      ///< by thread
 };
 
 }  // namespace gicodec

@@ -79,10 +79,10 @@ Status Distributor::State::write_unicast(ServedClient& client, unsigned thread,
     const auto from = anew ? UpdateStream::From::keyframe : UpdateStream::From::sent;
     for (std::size_t i = 0; i < unicast.streams.size(); ++i) {
       UpdateStream& stream = unicast.streams[i];
-      auto made = worker(thread, stream.desc());
-      if (!made) return made.status();
-      BackendEncoder& encoder = unicast.encoders.empty() ? *(*made)->encoder : *unicast.encoders[i];
-      const Status status = stream.write(from, p.blocks, encoder, (*made)->writer, p.written[i]);
+      const auto found = encoder(thread, *unicast.bundle->textures[i], stream, unicast.encoders, i);
+      if (!found) return found.status();
+      const Status status =
+          stream.write(from, p.blocks, **found, workers[thread].writer, p.written[i]);
       if (status != Status::ok) return status;
     }
   }
@@ -100,6 +100,9 @@ Status Distributor::State::write_within_budget(ServedClient& client, unsigned th
   const auto find_missing = [&](const Candidate& one) {
     return missing_dependencies(client, one, updates);
   };
+  // A stateful backend cannot write the packets again.
+  const bool once = std::any_of(client.unicast.begin(), client.unicast.end(),
+                                [](const UnicastBundle& one) { return one.bundle->is_stateful; });
   bool weighed = false;
   for (int attempt = 0;; ++attempt) {
     if (!weighed && limit < blocks_of(candidates)) {
@@ -113,8 +116,7 @@ Status Distributor::State::write_within_budget(ServedClient& client, unsigned th
     if (status != Status::ok) return status;
     const std::size_t bytes = bytes_of(planned), blocks = blocks_of(candidates);
     const bool fits = client.budget.bytes == 0 || bytes <= client.budget.bytes;
-    // A stateful backend cannot write the packets again.
-    if (fits || candidates.size() <= 1 || is_stateful) {
+    if (fits || candidates.size() <= 1 || once) {
       client.has_pending = all_pending > 0;
       client.held_back = blocks < all_pending && limit != client.budget.blocks;
       sent = blocks;

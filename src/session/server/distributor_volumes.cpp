@@ -6,9 +6,12 @@
 #include "session/server/region_size.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace gicodec {
+
+constexpr float kUnknownError = std::numeric_limits<float>::infinity();
 
 /// True if all textures of a bundled group, and of groups that depend on one another, are sent in
 /// the same updates.
@@ -23,16 +26,21 @@ static bool in_step(const ServedVolume& volume, const Bundle& bundle,
   });
 }
 
+bool ServedVolume::is_stateful() const noexcept {
+  return std::any_of(bundles.begin(), bundles.end(),
+                     [](const auto& bundle) { return bundle->is_stateful; });
+}
+
+bool ServedVolume::is_lossy() const noexcept {
+  return std::any_of(bundles.begin(), bundles.end(), [](const auto& bundle) {
+    return std::any_of(bundle->textures.begin(), bundle->textures.end(),
+                       [](const auto& texture) { return texture->options.is_lossy; });
+  });
+}
+
 /// Adds a texture of a group to its last bundle, or to one of its own.
 Status Distributor::State::add_texture(ServedVolume& volume, std::uint8_t group_id,
-                                       const NamedTexture& texture,
-                                       const StreamedTexture& streamed) {
-  auto encoder = backend->make_encoder(texture.desc, options.settings);
-  if (!encoder) return encoder.status();
-  // With a lossy backend the server would not know what clients hold.
-  if ((*encoder)->lossy()) return Status::unsupported_backend;
-  if ((*encoder)->is_stateful() && any_shared()) return Status::unsupported_backend;
-  is_stateful = (*encoder)->is_stateful();
+                                       const NamedTexture& texture, TextureOptions settings) {
   const TextureGroup& group = volume.desc.groups[group_id];
   const Bundle* const before = volume.bundles.empty() ? nullptr : volume.bundles.back().get();
   const bool first = before == nullptr || before->group_id != group_id;
@@ -41,18 +49,19 @@ Status Distributor::State::add_texture(ServedVolume& volume, std::uint8_t group_
         &group, group_id, regions_of(texture.desc, volume.described.region)));
   }
   Bundle& bundle = *volume.bundles.back();
-  StreamedTexture settings = streamed;
   // A texture that holds the presence of others is exact.
   const bool exact = texture.threshold == Threshold::exact || (first && group.presence == 0);
   if (exact && valid_error(settings.max_error)) settings.max_error = 0;
   bundle.textures.push_back(std::make_unique<ServedTexture>(texture, settings, volume.textures++,
                                                             options.settings.isa, options.threads));
+  bundle.is_stateful = bundle.is_stateful || settings.is_stateful;
   BlockHistory& history = bundle.textures.back()->history;
   bundle.first = first ? &history : before->first;
   for (std::uint32_t region = 0; region < bundle.cut.regions(); ++region) {
     bundle.regions[region].streams.emplace_back(
         history, region_texture(texture.desc, volume.described.region, region),
-        bundle.region_blocks[region], PacketChain{backend->id(), bundle.textures.back()->id}, 0);
+        bundle.region_blocks[region],
+        PacketChain{settings.backend->id(), bundle.textures.back()->id}, 0);
     bundle.regions[region].bytes += bundle.region_blocks[region].size() * block_bytes(texture.desc);
   }
   if (group.depends_on != TextureGroup::kNone) {
@@ -62,11 +71,13 @@ Status Distributor::State::add_texture(ServedVolume& volume, std::uint8_t group_
     for (const auto& other : volume.bundles)
       other->is_dependency = other->is_dependency || bundle.depends_on(*other);
   }
-  const bool sound = streamed.threshold >= 0 && valid_error(streamed.max_error) &&
-                     streamed.source_error >= 0 &&
-                     (streamed.threshold == 0 || streamed.max_error == 0);
-  if (!sound) return Status::invalid_bound;
-  const bool in_time = streamed.interval > 0 && in_step(volume, bundle, streamed.interval);
+  const bool sound = settings.threshold >= 0 && valid_error(settings.max_error) &&
+                     settings.source_error >= 0 &&
+                     (settings.threshold == 0 || settings.max_error == 0);
+  // The errors of a lossy backend and of these would add up.
+  const bool bounded = settings.threshold > 0 || settings.max_error > 0;
+  if (!sound || (settings.is_lossy && bounded)) return Status::invalid_bound;
+  const bool in_time = settings.interval > 0 && in_step(volume, bundle, settings.interval);
   return in_time ? Status::ok : Status::invalid_interval;
 }
 
@@ -88,11 +99,41 @@ Result<std::vector<StreamedTexture>> by_texture(const VolumeDesc& volume,
   return all;
 }
 
+Result<std::vector<TextureOptions>> Distributor::State::texture_options(
+    const VolumeDesc& volume, std::span<const StreamedTexture> streamed) const {
+  const auto sorted = by_texture(volume, streamed);
+  if (!sorted) return sorted.status();
+  std::vector<TextureOptions> all;
+  for (const TextureGroup& group : volume.groups) {
+    for (const NamedTexture& texture : group.textures) {
+      TextureOptions& one = all.emplace_back(TextureOptions{(*sorted)[all.size()]});
+      one.own_backend = one.backend != nullptr;
+      if (!one.own_backend) {
+        one.backend = backend;
+        one.settings = options.settings;
+      }
+      const auto encoder = one.backend->make_encoder(texture.desc, one.settings);
+      if (!encoder) return encoder.status();
+      one.is_stateful = (*encoder)->is_stateful();
+      one.is_lossy = (*encoder)->lossy();
+      // Unicast clients would each hold other contents.
+      if (one.is_lossy && any_unicast()) return Status::unsupported_backend;
+    }
+  }
+  return all;
+}
+
 Status Distributor::State::add_bundles(ServedVolume& volume,
-                                       std::span<const StreamedTexture> streamed) {
+                                       std::span<const TextureOptions> textures) {
   for (std::uint8_t group = 0; group < volume.desc.groups.size(); ++group) {
     for (const NamedTexture& texture : volume.desc.groups[group].textures) {
-      const Status status = add_texture(volume, group, texture, streamed[volume.textures]);
+      const Status status = add_texture(volume, group, texture, textures[volume.textures]);
+      if (status != Status::ok) return status;
+    }
+  }
+  for (const auto& bundle : volume.bundles) {
+    for (SharedRegion& region : bundle->regions) {
+      const Status status = make_encoders(*bundle, region.streams, region.encoders);
       if (status != Status::ok) return status;
     }
   }
@@ -108,9 +149,11 @@ Result<std::uint16_t> Distributor::add_volume(const VolumeDesc& desc,
     if (const Status status = validate(geometry); status != Status::ok) return status;
     if (const Status status = validate(desc); status != Status::ok) return status;
     if (!(desc.groups[0].textures[0].desc.grid == geometry.grid)) return Status::invalid_geometry;
-    const auto streamed = by_texture(desc, textures);
-    if (!streamed) return streamed.status();
     State& state = *state_;
+    const auto options = state.texture_options(desc, textures);
+    if (!options) return options.status();
+    const bool stateful = std::any_of(options->begin(), options->end(),
+                                      [](const TextureOptions& one) { return one.is_stateful; });
     const auto is_free = [](const auto& one) { return one->removed(); };
     const auto place = std::find_if(state.volumes.begin(), state.volumes.end(), is_free);
     const auto id = static_cast<std::uint16_t>(place - state.volumes.begin());
@@ -118,15 +161,19 @@ Result<std::uint16_t> Distributor::add_volume(const VolumeDesc& desc,
     state.volumes.reserve(std::size_t{id} + 1);
     auto volume = std::make_unique<ServedVolume>();
     volume->described = std::move(described);
+    for (std::size_t i = 0; i < volume->described.textures.size(); ++i) {
+      if ((*options)[i].is_lossy) volume->described.textures[i].largest_error = kUnknownError;
+    }
     volume->described.id = id;
     volume->described.geometry = geometry;
-    volume->described.region = region_for(desc, state.options.region);
-    volume->since = volume->described.added;
+    volume->described.region = !(state.options.region == Grid{}) ? state.options.region
+                               : stateful                        ? whole_region(desc)
+                                                                 : usual_region(desc);
+    volume->changed_in = volume->described.added;
     volume->desc = desc;
     volume->active.resize(desc.groups.size());
-    const bool was_stateful = state.is_stateful;
     const Status status = guarded([&]() -> Status {
-      Status one = state.add_bundles(*volume, *streamed);
+      Status one = state.add_bundles(*volume, *options);
       for (auto it = state.clients.begin(); one == Status::ok && it != state.clients.end();) {
         one = state.add_volume_to(*(it++)->second, *volume);
       }
@@ -134,7 +181,6 @@ Result<std::uint16_t> Distributor::add_volume(const VolumeDesc& desc,
     });
     if (status != Status::ok) {
       for (const auto& entry : state.clients) State::drop_volume_of(*entry.second, *volume);
-      state.is_stateful = was_stateful;
       return status;
     }
     // From here on nothing can fail.
@@ -149,9 +195,9 @@ Status Distributor::remove_volume(std::uint16_t volume, std::uint32_t generation
   if (found == nullptr) return Status::unknown_volume;
   // Clients' streams refer to its contents, so they go first.
   for (const auto& entry : state_->clients) State::drop_volume_of(*entry.second, *found);
+  for (StreamWorker& worker : state_->workers) worker.encoders.clear();
   *found = ServedVolume();
-  found->since = generation;
-  if (volumes() == 0) state_->is_stateful = false;
+  found->changed_in = generation;
   return Status::ok;
 }
 
@@ -167,7 +213,7 @@ Status Distributor::scroll(std::uint16_t volume, const Scroll& scroll) {
   moved.scroll = scroll;
   if (const Status status = validate(moved); status != Status::ok) return status;
   if (moved == served.described.geometry) return Status::ok;
-  if (state_->is_stateful) return Status::unsupported_backend;
+  if (served.is_stateful()) return Status::unsupported_backend;
   return guarded([&]() -> Status {
     const auto blocks = entering_blocks(moved.grid, served.described.geometry.scroll, scroll);
     const auto scrolls = [&](const Bundle& bundle) {

@@ -44,4 +44,13 @@ Grid usual_region(const VolumeDesc& volume) noexcept {
   return region;
 }
 
+Grid whole_region(const VolumeDesc& volume) noexcept {
+  Grid region{1, 1, 1};
+  for (const TextureGroup& group : volume.groups) {
+    const Grid& grid = group.textures.front().desc.grid;
+    region = {std::max(region.x, grid.x), std::max(region.y, grid.y), std::max(region.z, grid.z)};
+  }
+  return region;
+}
+
 }  // namespace gicodec

@@ -9,8 +9,7 @@ namespace gicodec {
 /// 192 KiB of records, or one block. Precondition: validate(volume) is ok.
 [[nodiscard]] Grid usual_region(const VolumeDesc& volume) noexcept;
 /// `region`, or usual_region() if it is all zeros.
-[[nodiscard]] inline Grid region_for(const VolumeDesc& volume, const Grid& region) noexcept {
-  return region == Grid{} ? usual_region(volume) : region;
-}
+/// One region for all blocks, e.g. where an encoder remembers a picture.
+[[nodiscard]] Grid whole_region(const VolumeDesc& volume) noexcept;
 
 }  // namespace gicodec

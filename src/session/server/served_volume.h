@@ -23,10 +23,10 @@ struct SharedPacket {
 };
 
 /// Clients of a region that hold the same state of it.
-struct Subscribers {
+struct SubscriberGroup {
   std::uint32_t all = 0;
   std::uint32_t served = 0;           ///< those whose turn this update is
-  bool extra = false;                 ///< the update has time for packets for these only
+  bool allotted = false;              ///< the update has time for packets for these only
   std::vector<SharedPacket> packets;  ///< that take them to the streams' state
 };
 
@@ -34,19 +34,21 @@ struct Subscribers {
 struct Lagging {
   std::vector<StreamState> states;
   std::uint32_t last_current = 0;  ///< SharedRegion::last_current() of that state
-  Subscribers subscribers;
+  SubscriberGroup subscribers;
 };
 
 /// A region of a bundle: the streams, one per texture, that all subscribers share. Clients that get
 /// fewer updates hold an earlier state of the streams and get catch-ups.
 struct SharedRegion {
   std::vector<UpdateStream> streams;
-  std::size_t bytes = 0;         ///< of its blocks in all textures
-  std::vector<Lagging> lagging;  ///< in the order of their sequences
-  std::uint64_t written = 0;     ///< blocks in the packets of the last update
-  std::uint64_t extra = 0;       ///< of these, in packets for few clients
-  Subscribers up_to_date;        ///< hold the streams' state
-  Subscribers waiting;           ///< hold no known state
+  std::vector<std::unique_ptr<BackendEncoder>> encoders;  ///< as UnicastBundle::encoders
+  std::uint64_t keyframe_turn = 0;  ///< where they are stateful: of the last keyframe; 0: none yet
+  std::size_t bytes = 0;            ///< of its blocks in all textures
+  std::vector<Lagging> lagging;     ///< in the order of their sequences
+  std::uint64_t written = 0;        ///< blocks in the packets of the last update
+  std::uint64_t for_few = 0;        ///< of these, in packets for few clients
+  SubscriberGroup up_to_date;       ///< hold the streams' state
+  SubscriberGroup waiting;          ///< hold no known state
   // Where blocks depend on others:
   /// The first update in which current contents differ from the streams'; 0: they do not differ.
   std::uint32_t changed = 0;
@@ -60,8 +62,14 @@ struct SharedRegion {
   }
 };
 
+/// How a texture is sent, with the backend and what its encoder says of itself.
+struct TextureOptions : StreamedTexture {
+  bool own_backend = false;  ///< not the server's
+  bool is_stateful = false, is_lossy = false;
+};
+
 struct ServedTexture {
-  ServedTexture(const NamedTexture& texture, const StreamedTexture& options_in, std::uint8_t id_in,
+  ServedTexture(const NamedTexture& texture, const TextureOptions& options_in, std::uint8_t id_in,
                 Isa isa, const Threads& threads)
       : options(options_in),
         id(id_in),
@@ -77,7 +85,7 @@ struct ServedTexture {
   /// True if a client of `stream` does not hold the block's current contents.
   [[nodiscard]] bool outdated(const UpdateStream& stream, std::uint32_t block) const noexcept;
 
-  StreamedTexture options;
+  TextureOptions options;
   std::uint8_t id;  ///< in the volume
   BlockHistory history;
   Threshold rule;
@@ -114,6 +122,8 @@ struct Bundle {
   std::vector<SharedRegion> regions;
   bool due = false;            ///< takes part in this update, as do bundles it depends on
   bool is_dependency = false;  ///< blocks of another group depend on its blocks
+  /// The backend of a texture is: who misses an update waits for a keyframe, which all get.
+  bool is_stateful = false;
 
   [[nodiscard]] const TextureDesc& desc() const noexcept { return textures[0]->history.desc(); }
   /// The number of the update among those in which it may be due.
@@ -160,7 +170,7 @@ class Dependencies {
 struct ServedVolume {
   /// The description for clients, with number, present geometry and region size.
   DescribedVolume described;
-  std::uint32_t since = 0;        ///< generation in which it was added or removed
+  std::uint32_t changed_in = 0;   ///< generation in which it was added or removed
   VolumeDesc desc;                ///< without groups if it was removed
   std::vector<BlockMask> active;  ///< by group; empty: all
   std::vector<std::unique_ptr<Bundle>> bundles;
@@ -170,6 +180,8 @@ struct ServedVolume {
 
   [[nodiscard]] std::uint16_t id() const noexcept { return described.id; }
   [[nodiscard]] bool removed() const noexcept { return desc.groups.empty(); }
+  [[nodiscard]] bool is_stateful() const noexcept;
+  [[nodiscard]] bool is_lossy() const noexcept;  ///< the backend of a texture is
   /// Of a group.
   [[nodiscard]] std::uint32_t blocks(std::size_t group) const noexcept {
     return block_count(desc.groups[group].textures[0].desc);

@@ -12,8 +12,12 @@
 namespace gicodec {
 namespace {
 
-/// Packets of a texture that can be reverted, at least.
-constexpr std::uint32_t kUnacknowledged = 32;
+/// Packets of a texture that can be reverted.
+std::uint32_t max_unacknowledged(std::uint32_t updates_in_flight) noexcept {
+  // Of each update two, if blocks moved.
+  constexpr std::uint32_t kPackets = 2, kMin = 48;
+  return std::max(kMin, std::min(updates_in_flight, UINT32_MAX / kPackets) * kPackets);
+}
 
 }  // namespace
 
@@ -52,7 +56,7 @@ void Server::State::drop(Connection& connection, Reason reason) noexcept {
   connection.dropped = true;
   // The client needs only the reason; without memory it gets nothing.
   connection.messages.clear();
-  connection.told = 0;
+  connection.volumes_sent = 0;
   connection.in_flight.clear();
   if (reason != Reason::left) {
     static_cast<void>(guarded([&]() -> Status {
@@ -85,15 +89,15 @@ Result<Server> Server::create(const ServerOptions& options) {
       return Status::invalid_argument;
     }
     // What is on its way can be taken back.
-    auto distributor = Distributor::create(
-        {.backend = options.backend,
-         .settings = options.settings,
-         .backends = options.backends,
-         .threads = options.threads,
-         .region = options.region,
-         .max_clients = limits.max_clients,
-         .all_visible = true,
-         .max_unacknowledged = std::max(limits.max_in_flight, kUnacknowledged)});
+    auto distributor =
+        Distributor::create({.backend = options.backend,
+                             .settings = options.settings,
+                             .backends = options.backends,
+                             .threads = options.threads,
+                             .region = options.region,
+                             .max_clients = limits.max_clients,
+                             .all_visible = true,
+                             .max_unacknowledged = max_unacknowledged(limits.max_in_flight)});
     if (!distributor) return distributor.status();
     Ticket ticket{};
     if (const Status status = draw(options, ticket); status != Status::ok) return status;
@@ -186,12 +190,12 @@ void Server::tick(double now) {
 std::vector<OutgoingMessage> Server::take_messages(ConnectionId connection) {
   Connection* const found = state_->find(connection);
   if (found == nullptr) return {};
-  found->told = 0;
+  found->volumes_sent = 0;
   return std::exchange(found->messages, {});
 }
 
 std::vector<ServerEvent> Server::take_events() {
-  // What there is no memory for is told the next time.
+  // What there is no memory for is said the next time.
   static_cast<void>(guarded([&]() -> Status {
     for (const auto& [id, connection] : state_->connections) {
       if (!connection->farewell) continue;

@@ -129,7 +129,7 @@ void Server::State::choose_turn(Connection& connection, double now) noexcept {
   const bool agreed =
       connection.in_flight.empty() || connection.in_flight.back().sync == connection.sync;
   if ((full || !may) && agreed) connection.turn = Turn::none;
-  // If all updates in flight are lost, only another update tells the client so.
+  // If all updates in flight are lost, only another update shows the client so.
   constexpr double kReminder = 1;  // seconds
   if (full && agreed &&
       now - std::max(connection.in_flight.back().made, connection.reminded) >= kReminder) {

@@ -132,7 +132,9 @@ Session* Server::State::session_for(Connection& connection, const Hello& hello, 
     client = distributor.connect(hello.delivery, hello.budget);
   }
   if (!client) {
-    drop(connection, client.status() == Status::out_of_memory ? Reason::exhausted : Reason::full);
+    drop(connection, client.status() == Status::out_of_memory         ? Reason::exhausted
+                     : client.status() == Status::unsupported_backend ? Reason::unicast_full
+                                                                      : Reason::full);
     return nullptr;
   }
   auto node = place.extract(place.begin());
@@ -201,7 +203,7 @@ bool Server::State::take_held(Connection& connection, std::uint32_t sync,
   for (const HeldState& state : held) {
     // Skips a volume that has gone since.
     const std::uint16_t volume = state.stream.volume;
-    if (volume < volumes.size() && volumes[volume]->since > of_generation) continue;
+    if (volume < volumes.size() && volumes[volume]->changed_in > of_generation) continue;
     const bool twice = !listed.insert(state.stream).second;
     const Status status =
         distributor.resume(session.client, state.stream, state.sequence, state.checksum);
@@ -267,7 +269,7 @@ void Server::State::answer(Connection& connection, const Subscribe& subscribe, d
   if (subscribe.volume >= volumes.size()) return drop(connection, Reason::unknown_volume);
   // Ignores a volume that has gone since.
   const ServedVolume& volume = *volumes[subscribe.volume];
-  if (volume.since > subscribe.generation) return;
+  if (volume.changed_in > subscribe.generation) return;
   if (!connection.messages_left.take(now, options.limits.messages_per_second, message_burst,
                                      subscribe_cost(volume))) {
     return drop(connection, Reason::flood);

@@ -77,7 +77,7 @@ struct Connection {
   bool congestion_limited = false;  ///< congestion control is what limits its bytes
   bool ready = true;  ///< in the last update it could have had blocks, but for its turn
   std::vector<OutgoingMessage> messages;
-  std::size_t told = 0;  ///< number of messages when the last list of volumes was added
+  std::size_t volumes_sent = 0;  ///< number of messages when the last list of volumes was added
   std::vector<float> latencies;
   ConnectionStatistics statistics;
 };
@@ -110,7 +110,7 @@ struct Server::State {
   Status send_update(Connection& connection, SharedUpdates& shared, double now, double time);
   [[nodiscard]] Result<DescribedVolume> describe(std::string name, const VolumeDesc& volume,
                                                  std::span<const StreamedTexture> textures) const;
-  void tell_volumes() noexcept;
+  void send_volumes_to_all() noexcept;
   void send_volumes(Connection& connection) noexcept;
   [[nodiscard]] std::vector<DescribedVolume> described_now() const;
   void choose_turn(Connection& connection, double now) noexcept;

@@ -12,7 +12,8 @@ namespace gicodec {
 namespace {
 
 /// The error of a texture at clients: that of the published records and of streaming together.
-float told_error(const TextureGroup& group, std::size_t place, const StreamedTexture& streamed) {
+float error_at_clients(const TextureGroup& group, std::size_t place,
+                       const StreamedTexture& streamed) {
   const NamedTexture& texture = group.textures[place];
   const bool exact = texture.threshold == Threshold::exact || place == group.presence;
   const float lost = exact ? 0 : std::max(streamed.threshold, streamed.max_error);
@@ -47,7 +48,7 @@ Result<DescribedVolume> Server::State::describe(std::string name, const VolumeDe
   for (const TextureGroup& group : volume.groups) {
     for (std::size_t place = 0; place < group.textures.size(); ++place) {
       const NamedTexture& texture = group.textures[place];
-      const float error = told_error(group, place, (*streamed)[described.textures.size()]);
+      const float error = error_at_clients(group, place, (*streamed)[described.textures.size()]);
       described.textures.push_back({texture.name, texture.desc.layout, error});
     }
   }
@@ -72,7 +73,7 @@ Result<std::uint16_t> Server::add_volume(std::string name, const VolumeDesc& vol
     }
     state.message_burst += burst_of(added);
     ++state.generation;
-    state.tell_volumes();
+    state.send_volumes_to_all();
     return id;
   });
 }
@@ -96,7 +97,7 @@ Status Server::remove_volume(std::uint16_t volume) {
                     [&](const auto& packet) { return packet.first.volume == volume; });
     }
   }
-  state.tell_volumes();
+  state.send_volumes_to_all();
   return Status::ok;
 }
 
@@ -109,7 +110,7 @@ std::vector<DescribedVolume> Server::State::described_now() const {
 }
 
 /// Drops clients that cannot get the list: they could not apply the next update.
-void Server::State::tell_volumes() noexcept {
+void Server::State::send_volumes_to_all() noexcept {
   for (const auto& [id, connection] : connections) {
     if (connection->session != nullptr) send_volumes(*connection);
   }
@@ -118,11 +119,12 @@ void Server::State::tell_volumes() noexcept {
 void Server::State::send_volumes(Connection& connection) noexcept {
   const Status sent = guarded([&]() -> Status {
     // Of consecutive lists only the last is needed.
-    const bool repeated = connection.told > 0 && connection.told == connection.messages.size();
+    const bool repeated =
+        connection.volumes_sent > 0 && connection.volumes_sent == connection.messages.size();
     const Status status = send(connection, Volumes{generation, described_now()});
     if (status != Status::ok) return status;
     if (repeated) connection.messages.erase(connection.messages.end() - 2);
-    connection.told = connection.messages.size();
+    connection.volumes_sent = connection.messages.size();
     return Status::ok;
   });
   if (sent != Status::ok) drop(connection, Reason::exhausted);
