@@ -149,10 +149,10 @@ struct Viewer {
       for (std::uint8_t t = 0; t < volume.textures.size(); ++t) {
         const ClientTexture& texture = volume.textures[t];
         if (anew) mine.emplace_back(texture.desc);
-        const std::uint64_t since = anew ? 0 : drawn;
-        Status status = client->read(volume.id, t, since, mine[t].view());
+        const std::uint64_t drawn_serial = anew ? 0 : drawn;
+        Status status = client->read(volume.id, t, drawn_serial, mine[t].view());
         if (status != Status::ok) return status;
-        status = texture.changed_blocks(since, blocks);
+        status = texture.changed_blocks(drawn_serial, blocks);
         if (status != Status::ok) return status;
         status = upload_boxes(texture.desc, mine[t].view(), blocks, boxes);
         if (status != Status::ok) return status;
