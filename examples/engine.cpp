@@ -1,7 +1,7 @@
 // A renderer and two that draw with its probes: texture arrays in mapped memory with a pitch, an
 // eighth of the probes updated in each frame, probes inside walls, a volume that follows the
 // camera, a second one that comes and goes with a level, a unicast client and one
-// of shared regions. In place of a network there are queues, which lose messages if told to:
+// of shared regions. In place of a network there are queues, which lose messages if asked to:
 //   engine [PERCENT]
 #include <gicodec/streaming.h>
 
@@ -129,7 +129,7 @@ Result<std::uint16_t> add(Server& server, const char* name, Volume& volume) {
   return id;
 }
 
-/// Who draws. Its textures are mapped memory of its own, and it copies what has changed in them.
+/// The renderer. Its textures are mapped memory of its own, and it copies what has changed in them.
 struct Viewer {
   std::optional<Client> client;
   ConnectionId connection = 0;

@@ -42,12 +42,12 @@ kinds::Source trace(kinds::TraceRequest request) {
       std::make_shared<MapServer>(*scene, options, request.threads, std::move(request.cancelled));
   kinds::Source source = kinds::live_source(
       "map", tools::take(irradiance_map_volume(server->desc()), "irradiance map"),
-      [scene, server, bases = options.by_bases, told = false](const kinds::SourceRequest& wanted,
-                                                              kinds::SourceFrame& frame) mutable {
+      [scene, server, bases = options.by_bases, reported = false](
+          const kinds::SourceRequest& wanted, kinds::SourceFrame& frame) mutable {
         server->update(wanted.time);
         frame.volumes[0].textures = server->textures();
-        if (told || server->clipped() == 0) return;
-        told = true;
+        if (reported || server->clipped() == 0) return;
+        reported = true;
         frame.remarks.push_back(
             fmt::format("10 bits hold no irradiance above 1, and that of {} {} is: it comes out "
                         "darker; E5B9G9R9_UFLOAT_PACK32 holds it",

@@ -53,7 +53,7 @@ struct Tracer {
   VolumeDesc volume = tools::take(
       photon_volume(options.batches, options.shots.capacity, options.shots.form), "photons");
   std::vector<std::vector<std::byte>> textures;
-  bool told = false;  ///< that there is no room
+  bool reported = false;  ///< a remark said that there is no room
 
   explicit Tracer(kinds::TraceRequest request)
       : scene(std::move(request.scene)),
@@ -69,7 +69,7 @@ struct Tracer {
     const BatchPool::Update update = batches.update(threads);
     for (const std::uint32_t slot : update.changed) write(slot);
     frame.volumes[0].textures = textures;
-    if (update.wanted > options.batches && !std::exchange(told, true)) {
+    if (update.wanted > options.batches && !std::exchange(reported, true)) {
       frame.remarks.push_back(fmt::format(
           "photons: the lights are worth {} batches, there is room for {}; the brightest have "
           "fewer: --set max-batches={} holds them all, a lower per-watt asks for fewer",

@@ -128,8 +128,8 @@ ddgi::TextureForms forms_of(const kinds::Settings& settings, const EngineLayout*
     (color ? forms.color_core : forms.visibility_core) = core_of(text);
   });
   const std::string_view encoding = kEncodings[settings.choice("encoding", kEncodings)];
-  if (const auto told = ddgi::encoding_from_string(encoding)) {
-    forms.encoding = *told;
+  if (const auto given = ddgi::encoding_from_string(encoding)) {
+    forms.encoding = *given;
   } else if (layout == nullptr) {
     forms.encoding = ddgi::usual_encoding(forms.color);
   }

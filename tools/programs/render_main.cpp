@@ -96,9 +96,9 @@ class Client {
   /// Places the scene at the time of `shown`, unless that is nullptr.
   void place(const StoredVolume* shown) {
     const Options& o = options_;
-    const auto told = shown == nullptr ? std::nullopt : shown->facts_at(o.frame).time;
-    const double time = o.time.value_or(told.value_or(static_cast<double>(o.frame) / 10));
-    if (shown != nullptr && !told && !o.time && !o.quiet) {
+    const auto stored_time = shown == nullptr ? std::nullopt : shown->facts_at(o.frame).time;
+    const double time = o.time.value_or(stored_time.value_or(static_cast<double>(o.frame) / 10));
+    if (shown != nullptr && !stored_time && !o.time && !o.quiet) {
       tools::print(stderr, "gi-render: {}: does not say when; drawn as at {} s; --time sets it\n",
                    shown->source(), time);
     }
@@ -223,10 +223,10 @@ void check_usage(const Options& o) {
 /// The scene of the flags, else that of `shown`. Fails if these differ.
 Scene find_scene(const SceneFlags& flags, const StoredVolume* shown, const FrameFacts& facts) {
   SceneFlags used = flags;
-  const bool told = !flags.scene.empty() || !flags.gltf.empty();
-  if (facts.scene && !(told && *facts.scene == scene_label(flags))) {
+  const bool scene_given = !flags.scene.empty() || !flags.gltf.empty();
+  if (facts.scene && !(scene_given && *facts.scene == scene_label(flags))) {
     const bool built_in = is_built_in(*facts.scene);
-    if (told)
+    if (scene_given)
       fail(Exit::bad_input, "{}: was traced in {}, not in {}; {}", shown->source(), *facts.scene,
            scene_label(flags),
            built_in ? "leave out --scene and --gltf" : "name that file by --gltf FILE");
@@ -236,7 +236,7 @@ Scene find_scene(const SceneFlags& flags, const StoredVolume* shown, const Frame
            "--gltf FILE",
            shown->source(), *facts.scene);
     used.scene = *facts.scene;
-  } else if (shown != nullptr && !facts.scene && !told) {
+  } else if (shown != nullptr && !facts.scene && !scene_given) {
     fail(Exit::usage,
          "{}: does not say in which scene it was traced; --scene NAME or --gltf FILE "
          "is needed",

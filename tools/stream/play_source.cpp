@@ -61,7 +61,7 @@ std::vector<std::string> remarks_on(const Recording& recording, bool allowed) {
   return remarks;
 }
 
-/// Tells a file from another at the same path, and from itself with more frames.
+/// Differs between a file and another at the same path, or the same with more frames.
 struct FileState {
   std::filesystem::file_time_type written;
   std::uintmax_t size = 0;
@@ -186,8 +186,9 @@ class RecordingPlayer final : public Player {
       for (NamedTexture& texture : group.textures) {
         const tools::StoredTexture& stored = input_->textures()[id++];
         texture.desc = stored.info.desc;
-        const bool told = stored.lossy.empty() || stored.largest_error > 0;
-        made.errors.push_back(told ? stored.largest_error : std::numeric_limits<float>::infinity());
+        const bool bounded = stored.lossy.empty() || stored.largest_error > 0;
+        made.errors.push_back(bounded ? stored.largest_error
+                                      : std::numeric_limits<float>::infinity());
       }
     }
     if (!entry.geometry) made.geometry.grid = made.desc.groups.front().textures.front().desc.grid;
@@ -202,9 +203,9 @@ class RecordingPlayer final : public Player {
   std::uint64_t at_ = 0;
 };
 
-/// `told`: the dumps' attributes say what they hold.
-[[noreturn]] void fail_no_probes(const std::string& folder, bool told) {
-  if (told) {
+/// `described`: the dumps' attributes say what they hold.
+[[noreturn]] void fail_no_probes(const std::string& folder, bool described) {
+  if (described) {
     fail(Exit::bad_input,
          "{}: its dumps are of other blocks than probes, which alone are played; the application "
          "that they are for can stream them itself",

@@ -248,7 +248,7 @@ Exit run(ServerFlags& o) {
          kMaxGridSide, o.region);
   o.server.region = *region;
   o.server.limits.max_clients = o.max_clients;
-  // More than the server's limit, so that it can tell further clients that it is full.
+  // More than the server's limit, so that it can answer further clients that it is full.
   o.service.net.links = std::min<std::size_t>(4095, o.server.limits.max_connections + 16);
   o.service.net.links_per_address = o.per_address;
   o.service.net.max_received = static_cast<std::size_t>(o.server.limits.max_message_bytes) + 1;
@@ -288,7 +288,7 @@ int main(int argc, char** argv) {
   options.server.threads = std::max(1U, std::thread::hardware_concurrency());
   add_server_flags(app, options);
   app.footer(fmt::format(
-      "Over ENet nothing is encrypted and clients cannot tell who the server is: across networks\n"
+      "Over ENet nothing is encrypted and clients cannot verify the server: across networks\n"
       "that are not trusted, use --listen-web.\n\n{}{}\n\n"
       "Examples:\n"
       "  gi-server --scene villa --grid 8x4x8 --listen 127.0.0.1:4600\n"

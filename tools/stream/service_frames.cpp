@@ -45,8 +45,8 @@ void Service::publish(const SourceFrame& frame) {
 void Service::tell_pace() {
   constexpr unsigned kFrames = 3;  // The first frame traces much that later ones reuse.
   const double period = 1 / options_.rate;
-  const bool told = slow_frames_ == kFrames;
-  if (told) return;
+  const bool remarked = slow_frames_ == kFrames;
+  if (remarked) return;
   slow_frames_ = trace_seconds_ > period ? slow_frames_ + 1 : 0;
   if (slow_frames_ < kFrames) return;
   log("a frame takes {:.2g} s to trace, and updates come every {:.2g} s: light changes as frames "

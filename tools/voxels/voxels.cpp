@@ -30,20 +30,20 @@ constexpr std::array kDrawing{
 constexpr std::array<std::string_view, 2> kBricks{"4", "8"};
 constexpr std::array<std::string_view, 2> kForms{"shared-exponent", "halves"};
 
-/// `told`: how many bricks were said to be left out.
-void next(VoxelServer& server, std::uint64_t& told, double time, kinds::SourceFrame& frame) {
+/// `reported`: how many bricks earlier remarks said to be left out.
+void next(VoxelServer& server, std::uint64_t& reported, double time, kinds::SourceFrame& frame) {
   server.update(time);
   const BrickPool& pool = server.pool();
   frame.volumes[0].textures = {{pool.bricks().begin(), pool.bricks().end()},
                                {pool.light().begin(), pool.light().end()}};
   const std::uint64_t lost = server.left_out();
-  if (lost > told) {
+  if (lost > reported) {
     frame.remarks.push_back(
         fmt::format("voxels: there is no room for {} of the finest bricks of this frame; --set "
                     "bricks={} holds them, 0 leaves room for more",
                     lost, std::min<std::uint64_t>(pool.slots() + lost, kMaxBlocks)));
   }
-  told = std::max(told, lost);
+  reported = std::max(reported, lost);
 }
 
 /// "91200 of 0.25 m in 2810 bricks" for each level.
@@ -79,9 +79,9 @@ kinds::Source trace(kinds::TraceRequest request) {
       tools::take(voxel_volume(server.pool().slots(), static_cast<std::uint8_t>(options.shape.side),
                                options.form),
                   "voxels"),
-      [tracer, told = std::uint64_t{0}](const kinds::SourceRequest& wanted,
-                                        kinds::SourceFrame& frame) mutable {
-        with_memory([&] { next(tracer->server, told, wanted.time, frame); });
+      [tracer, reported = std::uint64_t{0}](const kinds::SourceRequest& wanted,
+                                            kinds::SourceFrame& frame) mutable {
+        with_memory([&] { next(tracer->server, reported, wanted.time, frame); });
       });
   source.volumes[0].geometry = server.geometry();
   source.remarks.push_back(
