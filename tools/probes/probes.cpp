@@ -150,14 +150,14 @@ std::optional<FineVolume> fine_of(const kinds::Settings& settings) {
   return FineVolume{*grid, spacing};
 }
 
-kinds::Source trace(kinds::TraceRequest request) {
+kinds::Feed trace(kinds::TraceRequest request) {
   const auto server = std::make_shared<ProbeServer>(std::move(request.scene),
                                                     options_of(request.settings, request.seed),
                                                     request.threads, std::move(request.cancelled));
   return {server->volumes(),
           {},
           false,
-          [server](const kinds::SourceRequest& wanted) { return server->next(wanted); },
+          [server](const kinds::FeedRequest& wanted) { return server->next(wanted); },
           server->remarks()};
 }
 

@@ -100,7 +100,7 @@ class Client {
     const double time = o.time.value_or(stored_time.value_or(static_cast<double>(o.frame) / 10));
     if (shown != nullptr && !stored_time && !o.time && !o.quiet) {
       tools::print(stderr, "gi-render: {}: does not say when; drawn as at {} s; --time sets it\n",
-                   shown->source(), time);
+                   shown->path(), time);
     }
     rays_.set_state(scene_.state_at(time));
     camera_ = scene_.camera_at(time);
@@ -166,7 +166,7 @@ class Client {
     const Grid grid = shown.desc().groups.front().textures.front().desc.grid;
     SceneFlags flags = options_.scene;
     if (!flags.grid.empty() && tools::grid_from_string(flags.grid) != grid) {
-      fail(Exit::bad_input, "{}: its grid is {}, not {}; leave out --grid", shown.source(),
+      fail(Exit::bad_input, "{}: its grid is {}, not {}; leave out --grid", shown.path(),
            tools::to_string(grid), flags.grid);
     }
     flags.grid = tools::to_string(grid);
@@ -183,7 +183,7 @@ class Client {
         outside(shape.origin.x, last.x, box.lo.x, box.hi.x) ||
         outside(shape.origin.y, last.y, box.lo.y, box.hi.y) ||
         outside(shape.origin.z, last.z, box.lo.z, box.hi.z)) {
-      fail(Exit::bad_input, "{}: its volume lies outside of {}; {}", shown.source(), scene_.name,
+      fail(Exit::bad_input, "{}: its volume lies outside of {}; {}", shown.path(), scene_.name,
            flags.bounds.empty() ? "was it traced in another scene?" : "leave out --bounds");
     }
     shown.place(geometry_of(shape));
@@ -227,25 +227,25 @@ Scene find_scene(const SceneFlags& flags, const StoredVolume* shown, const Frame
   if (facts.scene && !(scene_given && *facts.scene == scene_label(flags))) {
     const bool built_in = is_built_in(*facts.scene);
     if (scene_given)
-      fail(Exit::bad_input, "{}: was traced in {}, not in {}; {}", shown->source(), *facts.scene,
+      fail(Exit::bad_input, "{}: was traced in {}, not in {}; {}", shown->path(), *facts.scene,
            scene_label(flags),
            built_in ? "leave out --scene and --gltf" : "name that file by --gltf FILE");
     if (!built_in)
       fail(Exit::usage,
            "{}: was traced in {}, which is no built-in scene; name that file by "
            "--gltf FILE",
-           shown->source(), *facts.scene);
+           shown->path(), *facts.scene);
     used.scene = *facts.scene;
   } else if (shown != nullptr && !facts.scene && !scene_given) {
     fail(Exit::usage,
          "{}: does not say in which scene it was traced; --scene NAME or --gltf FILE "
          "is needed",
-         shown->source());
+         shown->path());
   }
   Scene scene = load_scene(used);
   const std::uint64_t triangles = shown == nullptr ? 0 : shown->triangles();
   if (triangles != 0 && triangles != scene_id(scene_label(used), scene).geometry)
-    fail(Exit::bad_input, "{}: was traced in a scene of other triangles than {}", shown->source(),
+    fail(Exit::bad_input, "{}: was traced in a scene of other triangles than {}", shown->path(),
          scene.name);
   return scene;
 }

@@ -31,7 +31,7 @@ constexpr std::array<std::string_view, 2> kBricks{"4", "8"};
 constexpr std::array<std::string_view, 2> kForms{"shared-exponent", "halves"};
 
 /// `reported`: how many bricks earlier remarks said to be left out.
-void next(VoxelServer& server, std::uint64_t& reported, double time, kinds::SourceFrame& frame) {
+void next(VoxelServer& server, std::uint64_t& reported, double time, kinds::FeedFrame& frame) {
   server.update(time);
   const BrickPool& pool = server.pool();
   frame.volumes[0].textures = {{pool.bricks().begin(), pool.bricks().end()},
@@ -69,24 +69,24 @@ auto with_memory(const Work& work) {
   }
 }
 
-kinds::Source trace(kinds::TraceRequest request) {
+kinds::Feed trace(kinds::TraceRequest request) {
   const VoxelOptions options = options_of(request.settings, request.scene, request.seed);
   const auto tracer = with_memory(
       [&] { return std::make_shared<kinds::Tracer<VoxelServer>>(std::move(request), options); });
   const VoxelServer& server = tracer->server;
-  kinds::Source source = kinds::live_source(
+  kinds::Feed feed = kinds::live_feed(
       "voxels",
       tools::take(voxel_volume(server.pool().slots(), static_cast<std::uint8_t>(options.shape.side),
                                options.form),
                   "voxels"),
-      [tracer, reported = std::uint64_t{0}](const kinds::SourceRequest& wanted,
-                                            kinds::SourceFrame& frame) mutable {
+      [tracer, reported = std::uint64_t{0}](const kinds::FeedRequest& wanted,
+                                            kinds::FeedFrame& frame) mutable {
         with_memory([&] { next(tracer->server, reported, wanted.time, frame); });
       });
-  source.volumes[0].geometry = server.geometry();
-  source.remarks.push_back(
+  feed.volumes[0].geometry = server.geometry();
+  feed.remarks.push_back(
       fmt::format("{} slots; voxels: {}", server.pool().slots(), levels(server)));
-  return source;
+  return feed;
 }
 
 std::unique_ptr<kinds::VolumeLight> light(const ddgi::RayScene& /*scene*/, const VolumeDesc& desc,

@@ -1,4 +1,4 @@
-#include "source_fit.h"
+#include "feed_fit.h"
 
 #include "common/backend_flags.h"
 #include "dump/error.h"
@@ -12,7 +12,7 @@ namespace gicodec::streaming {
 using tools::Exit;
 using tools::fail;
 
-void check_backend(const ServerFlags& o, const SourceVolume& volume) {
+void check_backend(const ServerFlags& o, const FeedVolume& volume) {
   if (!volume.quantisers.empty())
     fail(Exit::usage,
          "--set qp is for containers, which --play streams: clients hold what is published bit by "

@@ -43,7 +43,7 @@ PoolOptions options_of(const kinds::Settings& settings, std::uint32_t seed) {
   return options;
 }
 
-/// What one source keeps from frame to frame.
+/// What one feed keeps from frame to frame.
 struct Tracer {
   ddgi::Scene scene;
   PoolOptions options;
@@ -64,7 +64,7 @@ struct Tracer {
     }
   }
 
-  void next(double time, kinds::SourceFrame& frame) {
+  void next(double time, kinds::FeedFrame& frame) {
     rays.set_state(scene.state_at(time));
     const BatchPool::Update update = batches.update(threads);
     for (const std::uint32_t slot : update.changed) write(slot);
@@ -107,16 +107,16 @@ constinit const kinds::TracedKind kTracedPhotons{
 
 std::span<const kinds::Setting> photon_settings() { return kSettings; }
 
-kinds::Source trace(kinds::TraceRequest request) {
+kinds::Feed trace(kinds::TraceRequest request) {
   const auto tracer = std::make_shared<Tracer>(std::move(request));
-  kinds::Source source =
-      kinds::live_source("photons", tracer->volume,
-                         [tracer](const kinds::SourceRequest& wanted, kinds::SourceFrame& frame) {
-                           tracer->next(wanted.time, frame);
-                         });
-  source.remarks = {
+  kinds::Feed feed =
+      kinds::live_feed("photons", tracer->volume,
+                       [tracer](const kinds::FeedRequest& wanted, kinds::FeedFrame& frame) {
+                         tracer->next(wanted.time, frame);
+                       });
+  feed.remarks = {
       "photons: only lights send out photons; emissive materials and the sky light nothing"};
-  return source;
+  return feed;
 }
 
 }  // namespace gicodec::photons
