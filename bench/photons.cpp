@@ -161,7 +161,7 @@ struct Case {
   std::vector<std::string> more;  ///< settings
 };
 
-kinds::Source source_of(const Case& c, std::vector<std::string> settings) {
+kinds::Feed feed_of(const Case& c, std::vector<std::string> settings) {
   kinds::TraceRequest request;
   request.scene = *ddgi::make_scene(c.scene);
   settings.insert(settings.end(), c.more.begin(), c.more.end());
@@ -173,9 +173,9 @@ kinds::Source source_of(const Case& c, std::vector<std::string> settings) {
 void print_sizes(const Case& c, const char* form, const std::vector<std::string>& settings) {
   auto all = settings;
   all.insert(all.end(), {"per-update=0", fmt::format("form={}", form), "max-batches=6"});
-  const kinds::Source source = source_of(c, all);
-  const auto textures = source.next({c.start, {}}).volumes[0].textures;
-  const TextureDesc desc = source.volumes[0].textures()[2].desc;
+  const kinds::Feed feed = feed_of(c, all);
+  const auto textures = feed.next({c.start, {}}).volumes[0].textures;
+  const TextureDesc desc = feed.volumes[0].textures()[2].desc;
   EncoderOptions options;
   auto native = Encoder::create(desc, options);
   if (!native) return;
@@ -277,8 +277,8 @@ std::string compare_pictures(const Case& c, const ddgi::Scene& scene, const ddgi
 
 void print_table_2(const Case& c, const Options& o) {
   constexpr unsigned kFrames = 30, kMeasured = 20;
-  const kinds::Source source = source_of(c, o.settings);
-  const kinds::SourceVolume& volume = source.volumes[0];
+  const kinds::Feed feed = feed_of(c, o.settings);
+  const kinds::FeedVolume& volume = feed.volumes[0];
   const ddgi::Scene scene = *ddgi::make_scene(c.scene);
   ddgi::RayScene rays(scene);
   const auto light = photons::light(rays, volume.desc);
@@ -292,7 +292,7 @@ void print_table_2(const Case& c, const Options& o) {
   double time = c.start;
   for (unsigned f = 0; f < kFrames; ++f) {
     time = c.start + f / c.fps;
-    const kinds::SourceFrame frame = source.next({time, {}});
+    const kinds::FeedFrame frame = feed.next({time, {}});
     const auto& textures = frame.volumes[0].textures;
     const std::vector<ConstTextureView> views(textures.begin(), textures.end());
     const std::size_t sent = bytes_of(tools::take(native.encode(views), c.scene));

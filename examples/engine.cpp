@@ -1,7 +1,7 @@
 // A renderer and two that draw with its probes: texture arrays in mapped memory with a pitch, an
 // eighth of the probes updated in each frame, probes inside walls, a volume that follows the
 // camera, a second one that comes and goes with a level, a unicast client and one
-// of shared regions. In place of a network there are queues, which lose messages if told to:
+// of shared regions. In place of a network there are queues, which lose messages if asked to:
 //   engine [PERCENT]
 #include <gicodec/streaming.h>
 
@@ -129,7 +129,7 @@ Result<std::uint16_t> add(Server& server, const char* name, Volume& volume) {
   return id;
 }
 
-/// Who draws. Its textures are mapped memory of its own, and it copies what has changed in them.
+/// The renderer. Its textures are mapped memory of its own, and it copies what has changed in them.
 struct Viewer {
   std::optional<Client> client;
   ConnectionId connection = 0;
@@ -149,10 +149,10 @@ struct Viewer {
       for (std::uint8_t t = 0; t < volume.textures.size(); ++t) {
         const ClientTexture& texture = volume.textures[t];
         if (anew) mine.emplace_back(texture.desc);
-        const std::uint64_t since = anew ? 0 : drawn;
-        Status status = client->read(volume.id, t, since, mine[t].view());
+        const std::uint64_t drawn_serial = anew ? 0 : drawn;
+        Status status = client->read(volume.id, t, drawn_serial, mine[t].view());
         if (status != Status::ok) return status;
-        status = texture.changed_blocks(since, blocks);
+        status = texture.changed_blocks(drawn_serial, blocks);
         if (status != Status::ok) return status;
         status = upload_boxes(texture.desc, mine[t].view(), blocks, boxes);
         if (status != Status::ok) return status;

@@ -161,9 +161,9 @@ class LearnedNumbers {
     }
     std::uint32_t value = 1;
     for (std::uint32_t left = w - 1; left > 0; --left) {
-      const bool told = w - left <= 2;
-      const bool one = told ? bit(digits_[{kind, w, value}]) : false;
-      if (!told) return (value << left | source_.bypass(left)) - 1;
+      const bool modelled = w - left <= 2;
+      const bool one = modelled ? bit(digits_[{kind, w, value}]) : false;
+      if (!modelled) return (value << left | source_.bypass(left)) - 1;
       value = 2 * value + (one ? 1 : 0);
     }
     return value - 1;

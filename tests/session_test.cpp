@@ -348,9 +348,9 @@ TEST(Session, KeyframesComeEveryGopPacketsAndOnRequest) {
     auto encoder = *Encoder::create(desc, {.backend = "raw", .gop = gop});
     for (std::uint32_t i = 0; i < 10; ++i) {
       if (i == 5) encoder.request_keyframe();
-      const std::uint32_t since = i < 5 ? i : i - 5;
+      const std::uint32_t after_keyframe = i < 5 ? i : i - 5;
       const auto info = peek(*encoder.encode(texture.view()));
-      EXPECT_EQ(is_keyframe(info->type), gop == 0 ? since == 0 : since % gop == 0)
+      EXPECT_EQ(is_keyframe(info->type), gop == 0 ? after_keyframe == 0 : after_keyframe % gop == 0)
           << gop << " " << i;
     }
   }

@@ -25,7 +25,7 @@ vec3 direction_of(uint record) {
   return max(vec3(codes) / 127.0, vec3(-1.0));
 }
 
-// False where all bytes are zero: there is no light to tell, as within a wall.
+// False where all bytes are zero: there is no light, as within a wall.
 bool has_light(uint vertex) {
   uint bits = 0u;
   for (uint record = 6u * vertex; record < 6u * vertex + 6u; ++record) {

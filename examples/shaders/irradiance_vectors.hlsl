@@ -23,7 +23,7 @@ float3 direction_of(uint record) {
   return max(float3(codes) / 127.0, -1.0);
 }
 
-// False where all bytes are zero: there is no light to tell, as within a wall.
+// False where all bytes are zero: there is no light, as within a wall.
 bool has_light(uint vertex) {
   uint bits = 0;
   for (uint record = 6 * vertex; record < 6 * vertex + 6; ++record) {

@@ -43,10 +43,11 @@ struct AoPoint {
   friend bool operator==(const AoPoint&, const AoPoint&) = default;
 };
 
-/// Never 0. Values out of range or infinite become the nearest in range, NaN becomes 0, and a
-/// normal without direction +z.
+/// Never 0. A value out of range or infinite becomes the nearest in range, NaN becomes 0, and a
+/// normal of length 0 becomes +z.
 [[nodiscard]] std::uint32_t pack_ao_point(const AoPoint& point) noexcept;
-/// `place` is the centre of its 1/32 of the cell. nullopt for a free place.
+/// Coordinates are stored in steps of 1/32 of the cell: `place` is the centre of the step. nullopt
+/// for a free place.
 [[nodiscard]] std::optional<AoPoint> unpack_ao_point(std::uint32_t bits) noexcept;
 /// The point with another visibility.
 [[nodiscard]] constexpr std::uint32_t with_visible(std::uint32_t bits,

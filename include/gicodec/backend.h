@@ -35,7 +35,7 @@ struct BlockTable {
 /// The mirror: what a decoder holds of a texture. Blocks that were not received are zero.
 struct MirrorView {
   BlockTable blocks;
-  const std::uint8_t* received = nullptr;  ///< per block; null: received if place is not 0
+  const std::uint8_t* received = nullptr;  ///< per block; null: received if blocks.place is not 0
   /// Presence::brick: the presence that each block was received with; zero if not received.
   BlockTable presence = {};
 
@@ -51,7 +51,7 @@ struct EncodeJob {
   BlockTable records;                     ///< of `blocks`, in their order; missing records are zero
   MirrorView mirror;                      ///< before this update
   bool keyframe = false;  ///< the payload must not depend on `mirror` or earlier payloads
-  /// With `keyframe`: the payload may depend on what `mirror` holds of blocks not in `blocks`.
+  /// With `keyframe`: the payload may depend on `mirror`, of blocks that are not in `blocks`.
   /// Never set for a lossy backend.
   bool intra = false;
   /// Presence of `blocks`, in their order, presence_bytes() each. Empty for Presence::all.

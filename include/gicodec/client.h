@@ -32,9 +32,9 @@ struct ClientTexture {
   float largest_error = 0;
 
   [[nodiscard]] ConstTextureView view() const noexcept { return {texels}; }
-  /// Replaces `out` by the blocks that were replaced after the frame of that serial, ascending.
-  /// Keeps its capacity. out_of_memory.
-  Status changed_blocks(std::uint64_t since, std::vector<std::uint32_t>& out) const;
+  /// Replaces `out` by the blocks that were replaced after the frame of serial `after_serial`,
+  /// ascending. Keeps its capacity. out_of_memory.
+  Status changed_blocks(std::uint64_t after_serial, std::vector<std::uint32_t>& out) const;
 };
 
 struct ClientVolume {
@@ -146,10 +146,10 @@ class Client {
   /// The frame being built: complete while consistent(), else something is missing and requested.
   [[nodiscard]] const ClientFrame& frame() const noexcept;
   [[nodiscard]] bool consistent() const noexcept;
-  /// Writes the blocks of a texture that were replaced after the frame of serial `since`, guard
-  /// bands included, to their places in `view`, e.g. mapped memory. While consistent() these are
-  /// the contents of frame(). unknown_volume, unknown_texture, view_too_small.
-  Status read(std::uint16_t volume, std::uint8_t texture, std::uint64_t since,
+  /// Writes the blocks of a texture that were replaced after the frame of serial `after_serial`,
+  /// guard bands included, to their places in `view`, e.g. mapped memory. While consistent() these
+  /// are the contents of frame(). unknown_volume, unknown_texture, view_too_small.
+  Status read(std::uint16_t volume, std::uint8_t texture, std::uint64_t after_serial,
               TextureView view) const;
   /// The server's reason for ending the connection.
   [[nodiscard]] const Goodbye& goodbye() const noexcept;

@@ -153,10 +153,10 @@ class ContainerReader {
   /// True once the reader found the end mark; open() finds it if the source can seek. A file
   /// without one was cut off or is growing.
   [[nodiscard]] bool finished() const noexcept;
-  /// Moves next() to where decoding `frame` has to begin: of each selected region of a texture it
-  /// gives the packets from the last keyframe up to `frame` on, then all later ones. First reads
-  /// the part of a growing file that its index does not list yet. unknown_frame if the container
-  /// has no such frame or is not seekable().
+  /// Moves next() to where decoding has to begin for `frame`. Of each selected region of a texture,
+  /// next() then gives the last keyframe that is not after `frame`, and all packets behind it.
+  /// First reads the part of a growing file that its index does not list yet. unknown_frame if the
+  /// container has no such frame or is not seekable().
   Status seek(std::uint64_t frame);
 
   ContainerReader(ContainerReader&&) noexcept;

@@ -25,8 +25,9 @@ struct EncoderOptions {
   std::uint32_t gop = 30;       ///< a keyframe every `gop` packets; 0: only on request
   std::uint8_t texture_id = 0;  ///< written into every packet; the application chooses it
   /// Error bound of decoded records, see error_bound.h; 0: lossless. If it allows_error(), packets
-  /// are marked lossy. A record then keeps the value sent before while that is within the bound, or
-  /// follows its source, whichever takes fewer bytes. Unchanged blocks are not sent again.
+  /// are marked lossy. A record that changed then keeps the value sent before while that is within
+  /// the bound, or changes by as much as the input, whichever takes fewer bytes. Unchanged blocks
+  /// are not sent again.
   float max_error = 0;
   std::vector<const Backend*> backends = {};  ///< besides the built-in ones; for create() only
 };

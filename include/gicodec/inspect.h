@@ -20,7 +20,7 @@ struct PacketInfo {
   bool lossy = false;               ///< decoded records may differ from the encoder's input
   std::uint32_t sequence = 0;       ///< number of the update; the encoder counts from 1
   std::uint32_t reference = 0;      ///< number of the update it builds on; 0 for a keyframe
-  bool all_blocks = false;          ///< it lists all blocks of the texture, without their number
+  bool all_blocks = false;          ///< it has all blocks of the texture, and lists none
   std::uint32_t blocks = 0;         ///< number of blocks in the update; 0 with all_blocks
   std::size_t header_size = 0;      ///< fields and checksum
   std::size_t index_size = 0;       ///< index buffer

@@ -14,8 +14,9 @@ inline constexpr std::uint8_t kKindIrradianceMaps = 4;
 
 /// How a map is streamed.
 enum class MapWay : std::uint8_t {
-  map = 0,    ///< as texels
-  bases = 1,  ///< as coefficients of basis functions; sent once: how each texel blends up to 8
+  map = 0,  ///< as texels
+  /// As coefficients of basis functions. How each texel blends up to 8 of them is sent once.
+  bases = 1,
 };
 
 /// Texels along a side of a tile. Each tile has a mask of 32 bytes: a bit per texel, row by row,

@@ -1,5 +1,5 @@
-// Irradiance vectors (Pacanowski et al. §3): each vertex of a grid has six, a colour and a
-// direction each, for the hemispheres around +x, −x, +y, −y, +z, −z.
+// Irradiance vectors (Pacanowski et al. §3), each a colour and a direction. Each vertex of a grid
+// has six, for the hemispheres around +x, −x, +y, −y, +z, −z.
 #pragma once
 
 #include <gicodec/api.h>

@@ -18,11 +18,11 @@ struct MemoryHook {
   void* self = nullptr;  ///< must outlive the program's last buffer
 };
 
-/// Sets the allocator for all that grows with textures: records, mirrors, histories, and what
-/// coding needs, zstd's and LZ4's contexts included. Operator new still provides what is handed out
-/// (packets, messages, frames), what is small, and the memory of other backends. Call it before
-/// anything else. out_of_order while buffers exist; invalid_argument if a function is missing. An
-/// empty hook restores operator new.
+/// Sets the allocator of all memory that grows with textures: records, mirrors, histories, and
+/// working memory of coding, the contexts of zstd and LZ4 included. Operator new still allocates
+/// what callers get (packets, messages, frames), small objects, and the memory of other backends.
+/// Call it before anything else. out_of_order while buffers exist; invalid_argument if a function
+/// is missing. An empty hook restores operator new.
 Status set_memory(const MemoryHook& hook) noexcept;
 
 }  // namespace gicodec

@@ -18,7 +18,7 @@ enum class PacketType : std::uint8_t {
   intra = 2,           ///< a delta that does not depend on what its blocks held before
   snapshot = 3,        ///< a keyframe that replaces all packets up to its sequence
   catch_up = 4,        ///< a delta that replaces all packets after its reference
-  intra_catch_up = 5,  ///< an intra update that does so
+  intra_catch_up = 5,  ///< an intra packet that replaces all packets after its reference
 };
 inline constexpr std::uint8_t kPacketTypes = 6;
 
@@ -33,7 +33,7 @@ inline constexpr std::uint8_t kPacketTypes = 6;
   return type >= PacketType::snapshot;
 }
 
-/// What a decoder may spend on untrusted bytes. Checked before it is spent; limit_exceeded.
+/// What a decoder may spend on untrusted bytes. Calls check it first, and answer limit_exceeded.
 struct DecodeLimits {
   std::uint64_t max_texture_bytes = std::uint64_t{1} << 30;  ///< one texture, tightly packed
   std::uint64_t max_packet_bytes = std::uint64_t{1} << 30;

@@ -50,9 +50,10 @@ struct PhotonBatch {
   friend bool operator==(const PhotonBatch&, const PhotonBatch&) = default;
 };
 
-/// A photon. Its flux is power · normalisation · watts / E, with the watts of its batch and E the
-/// sum of `emitted` over all batches of its light that the client uses. So light is right however
-/// many of them the client holds, and a light that only grows or fades does not change its photons.
+/// A photon. Its flux is power · normalisation · watts / E: `watts` of its batch, and E the sum of
+/// `emitted` over all batches of its light that the client uses. The light is then right however
+/// many of these batches the client holds, and photons stay the same while their light only grows
+/// or fades.
 /// Example: of a white lamp of 60 watts that emitted 10,000 photons, a photon that met a wall of
 /// albedo 0.5 has power 0.5 in each channel and a flux of 0.003 watts.
 struct Photon {

@@ -58,7 +58,7 @@ class ContainerPlayer {
   /// - out_of_memory: the next call repeats the packet.
   /// - Any other error, see where(): the frame is incomplete. The next call goes on after the
   ///   failed packet, whose texture needs a keyframe. If the container itself is damaged, the error
-  ///   comes after all packets before the damage; those behind it can only be reached by seek().
+  ///   comes after all packets before the damage; only seek() reaches those behind it.
   [[nodiscard]] Status next();
   /// Passes over the next frame: its packets are neither checked nor decoded. Their textures then
   /// need keyframes before next() can decode them.

@@ -157,8 +157,8 @@ class Server {
                                                  std::span<const StreamedTexture> textures = {});
   /// Clients drop the volume with the next update. A later volume may get its number.
   Status remove_volume(std::uint16_t volume);
-  /// Sets a texture's contents from the next update on; reads the view during the call. Publish
-  /// the presence of other textures before these, and all of them before the next update, which
+  /// Sets a texture's contents from the next update on; reads the view during the call. After a
+  /// texture that holds the presence of others, publish these others before the next update, which
   /// otherwise answers presence_missing. Errors: view_too_small, presence_invalid.
   Status publish(std::uint16_t volume, std::uint8_t texture, ConstTextureView view);
   /// The same if only the listed blocks, in any order, may have changed. Reads only these, and
@@ -180,8 +180,9 @@ class Server {
 
   // Connections.
 
-  /// Call this for each new connection of a transport. `origin` tells peers apart, e.g. an address;
-  /// empty: unknown. On limit_exceeded, out_of_memory or invalid_time close the connection.
+  /// Call this for each new connection of a transport. `origin` identifies the peer, e.g. by its
+  /// address; empty: unknown. On limit_exceeded, out_of_memory or invalid_time close the
+  /// connection.
   [[nodiscard]] Result<ConnectionId> connect(double now, std::string_view origin = {});
   /// Takes a message of a client. Drops a connection that breaks the rules; ignores messages of
   /// dropped connections.
@@ -201,17 +202,17 @@ class Server {
 
   /// Makes the next packets for all sessions, and the messages that carry them. `time`: of what is
   /// shown, seconds; sent to clients. invalid_time changes nothing. After any other error go on:
-  /// updates() tells whether there was an update. The server then dropped the connections that it
-  /// could not serve, or sent them nothing and keeps their blocks pending; it served all others.
-  /// presence_missing: textures that were not published since their presence are left out.
+  /// if updates() has grown, there was an update. It served all connections but those that failed,
+  /// which the server dropped, or sent nothing and keeps their blocks pending. presence_missing:
+  /// the update left out textures that were not published after their presence.
   Status update(double now, double time);
-  /// Limits an update's blocks in packets for few clients: in snapshots and catch-ups of shared
-  /// streams (one packet is always made), and as many again in unicast packets. Each session with
-  /// pending blocks gets an even share of these, or its turn if that is less than a block. Blocks
-  /// beyond the limit stay pending. 0, the default: no limit.
+  /// Limits the blocks that an update codes for few clients: so many in snapshots and catch-ups of
+  /// shared streams (at least one packet is always made), and so many in unicast packets. Sessions
+  /// with pending blocks get even shares of the latter, or take turns if a share is less than a
+  /// block. Blocks beyond the limit stay pending. 0, the default: no limit.
   void set_unicast_block_limit(std::uint32_t blocks) noexcept;
-  /// Adapts that limit to how long the last update took and how long one may take: lowers it while
-  /// updates take too long, else raises it. Seconds; ignores values that are no times.
+  /// Adapts that limit: lowers it while updates take longer than `budget`, else raises it.
+  /// `elapsed`: how long the last update took. In seconds; ignores values that are no times.
   void report_update_time(double elapsed, double budget) noexcept;
   /// Enforces timeouts; update() does so too.
   void tick(double now);

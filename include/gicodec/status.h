@@ -24,12 +24,12 @@ enum class [[nodiscard]] Status : std::uint16_t{
     block_repeated = 104,       ///< the same block index twice in one list
     /// A record that is not valid, or that the backend cannot code (raw, lz4 and zstd code all).
     unsupported_format = 105,
-    unknown_backend = 106,      ///< no backend of that name is built in or was given
+    unknown_backend = 106,      ///< no backend of that name, built in or given
     buffer_too_small = 107,     ///< the caller's output buffer cannot hold the result
     unsupported_backend = 108,  ///< the backend does not support the call
     /// Block shape, space or presence that the backend cannot code (raw, lz4 and zstd code all).
     unsupported_shape = 109,
-    unknown_kind = 110,        ///< no kind of that number or name is built in or was given
+    unknown_kind = 110,        ///< no kind of that number or name, built in or given
     unknown_volume = 111,      ///< no volume of that number
     unknown_texture = 112,     ///< the volume has no texture of that number or name
     unknown_group = 113,       ///< the volume has no texture group of that number

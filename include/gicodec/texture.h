@@ -114,8 +114,8 @@ struct TextureDesc {
   Space space = Space::grid;
   Presence presence = Presence::all;
   Model model = Model::stacked;
-  /// Grids whose last blocks are not full: the texture's records along each axis. Zeros: all blocks
-  /// are full. Records of a block beyond them are zero, and with Tiling::slices_xy_z not in memory.
+  /// The texture's records along each axis, of a grid whose last blocks are not full. Zeros: all
+  /// blocks are full. Records beyond these are zero, and with Tiling::slices_xy_z not in memory.
   Grid records{};
   Layout layout{};
 

@@ -98,8 +98,8 @@ class RegionGrid {
 /// The regions of a texture in a volume with regions of `size`: boxes of a grid, or runs of x·y·z
 /// slots of a pool.
 [[nodiscard]] RegionGrid regions_of(const TextureDesc& desc, const Grid& size) noexcept;
-/// The description of one region as a texture, which its packets are made for. In memory it is an
-/// atlas_xy_z.
+/// The description of one region as a texture of its own: packets of the region are made for it.
+/// Its layout is atlas_xy_z.
 [[nodiscard]] TextureDesc region_texture(const TextureDesc& desc, const Grid& size,
                                          std::uint32_t region) noexcept;
 

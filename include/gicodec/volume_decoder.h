@@ -43,11 +43,11 @@ class VolumeDecoder {
   VolumeDecoder& operator=(VolumeDecoder&&) noexcept;
   ~VolumeDecoder();
 
-  /// Applies the packets of an update in order; skips a packet that is the last one applied of its
-  /// texture. unknown_texture or out_of_order, and nothing applied, unless each packet is of a
-  /// texture of this volume, each texture at most once, ascending. Other errors are those of
+  /// Applies the packets of an update in order; skips a packet that its texture's decoder applied
+  /// last. The packets' textures must be of this volume and ascend without repetition; otherwise
+  /// unknown_texture or out_of_order, and nothing is applied. Other errors are those of
   /// Decoder::decode(): the failed packet and those behind it are not applied. After out_of_memory
-  /// the same call continues; after others these textures need a keyframe.
+  /// repeat the same call, which continues; after others these textures need a keyframe.
   Status decode(std::span<const Packet> update);
   /// The same with one packet. A packet of presence comes before those of the textures it is for.
   Status decode(std::span<const std::byte> packet);

@@ -43,9 +43,10 @@ inline constexpr unsigned kMaxBrickLevel = 18;
 inline constexpr std::uint32_t kMaxBrickSide = 1U << 18;  ///< bricks along an axis
 
 /// Where a brick stands. Its first voxel is side·(x, y, z) of its level. Level 0 is the finest. A
-/// voxel of level l + 1 covers 2³ voxels of level l; its light of a direction is the mean of theirs
-/// that is not zero. Voxel (0, 0, 0) of each level begins at the volume's origin; voxels of level 0
-/// are `spacing` wide. In a mask voxel (x, y, z) of the brick is bit x + side·(y + side·z).
+/// voxel of level l + 1 covers 2³ voxels of level l; its light of a direction is the mean of those
+/// of theirs that are not zero. Voxel (0, 0, 0) of each level begins at the volume's origin; voxels
+/// of level 0 are `spacing` wide. In a mask voxel (x, y, z) of the brick is bit x + side·(y +
+/// side·z).
 struct BrickPlace {
   std::uint8_t level = 0;             ///< 0..kMaxBrickLevel
   std::array<std::uint32_t, 3> at{};  ///< x, y, z in bricks, each below kMaxBrickSide

@@ -118,9 +118,10 @@ Status resolve(VolumeEntry& volume, std::span<TextureEntry> textures, const Deco
     anywhere.grid = {1, 1, 1};
     return validate(anywhere) == Status::ok ? Status::ok : Status::corrupt;
   }
-  std::vector<ToldTexture> told;
-  for (const TextureEntry& texture : textures) told.push_back({texture.name, texture.desc.layout});
-  auto desc = read_volume_desc(volume.kind, volume.description, told, kinds);
+  std::vector<TextureLayout> layouts;
+  for (const TextureEntry& texture : textures)
+    layouts.push_back({texture.name, texture.desc.layout});
+  auto desc = read_volume_desc(volume.kind, volume.description, layouts, kinds);
   if (!desc) return desc.status();
   auto entry = textures.begin();
   for (const TextureGroup& group : desc->groups) {

@@ -98,21 +98,21 @@ Status write_volume_desc(const VolumeDesc& volume, std::span<const Kind* const> 
 }
 
 Result<VolumeDesc> read_volume_desc(std::uint8_t kind, std::span<const std::byte> description,
-                                    std::span<const ToldTexture> textures,
+                                    std::span<const TextureLayout> layouts,
                                     std::span<const Kind* const> kinds) {
   const Kind* const known = find_kind(kind, kinds);
   if (known == nullptr) return Status::unknown_kind;
   auto volume = known->read(description);
   // A kind's Status::end would be taken for the end of the file or session.
   if (!volume) return volume.status() == Status::end ? Status::corrupt : volume.status();
-  auto told = textures.begin();
+  auto next = layouts.begin();
   for (TextureGroup& group : volume->groups) {
     for (NamedTexture& texture : group.textures) {
-      if (told == textures.end() || told->name != texture.name) return Status::corrupt;
-      texture.desc.layout = (told++)->layout;
+      if (next == layouts.end() || next->name != texture.name) return Status::corrupt;
+      texture.desc.layout = (next++)->layout;
     }
   }
-  const bool agrees = volume->kind == kind && told == textures.end();
+  const bool agrees = volume->kind == kind && next == layouts.end();
   if (!agrees || validate(*volume) != Status::ok) return Status::corrupt;
   return volume;
 }

@@ -30,16 +30,16 @@ void write_texture(const TextureDesc& desc, ByteWriter& writer);
 [[nodiscard]] Status write_volume_desc(const VolumeDesc& volume, std::span<const Kind* const> kinds,
                                        std::vector<std::byte>& out);
 
-/// A texture's name and layout, from a container or a server.
-struct ToldTexture {
+/// The layout of the texture of that name, from a container or a server.
+struct TextureLayout {
   std::string_view name;
   Layout layout;
 };
-/// Reads the volume of a kind's description and gives its textures these layouts. unknown_kind;
-/// corrupt unless names and number agree and all is valid.
+/// Reads the volume of a kind's description and gives its textures these layouts, in their order.
+/// unknown_kind; corrupt unless their names and number agree and all is valid.
 [[nodiscard]] Result<VolumeDesc> read_volume_desc(std::uint8_t kind,
                                                   std::span<const std::byte> description,
-                                                  std::span<const ToldTexture> textures,
+                                                  std::span<const TextureLayout> layouts,
                                                   std::span<const Kind* const> kinds);
 
 /// The checksum of write_texture()'s bytes, which a keyframe holds as its base.

@@ -112,8 +112,8 @@ class RunModel {
   static constexpr std::uint32_t kMin = 1U << (kBitScale - 6);
 
   template <typename Coder>
-  static bool bit(Coder& coder, Counter& counter, bool told) {
-    const bool one = coder.bit(std::clamp(counter.one, kMin, (1U << kBitScale) - kMin), told);
+  static bool bit(Coder& coder, Counter& counter, bool value) {
+    const bool one = coder.bit(std::clamp(counter.one, kMin, (1U << kBitScale) - kMin), value);
     const std::uint32_t rate = (2U << kBitScale) / (2 * counter.asked + 3);
     const std::uint32_t off = one ? (1U << kBitScale) - 1 - counter.one : counter.one;
     const auto step = static_cast<std::uint32_t>(std::uint64_t{off} * rate >> kBitScale);
@@ -124,9 +124,9 @@ class RunModel {
 
   template <typename Coder>
   std::uint32_t number(Coder& coder, unsigned kind, std::uint32_t value) {
-    const auto told = static_cast<unsigned>(std::bit_width(value + 1));
+    const auto value_width = static_cast<unsigned>(std::bit_width(value + 1));
     unsigned width = 1;
-    while (width < kMaxWidth && bit(coder, wider_[kind][far_][width], told > width)) ++width;
+    while (width < kMaxWidth && bit(coder, wider_[kind][far_][width], value_width > width)) ++width;
     std::uint32_t read = 1;
     unsigned left = width - 1;
     for (unsigned digit = 0; digit < kDigits && left > 0; ++digit) {

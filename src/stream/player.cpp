@@ -68,7 +68,7 @@ std::span<const std::uint32_t> ContainerPlayer::changed(std::uint8_t texture) co
   return there ? state_->decoders.changed(texture) : std::span<const std::uint32_t>();
 }
 std::span<const ContainerPacket> ContainerPlayer::packets() const noexcept {
-  return std::span(state_->packets).first(state_->count);
+  return std::span(state_->packets).first(state_->packet_count);
 }
 
 Status ContainerPlayer::select(std::span<const std::uint8_t> textures) {
@@ -119,48 +119,48 @@ Status ContainerPlayer::State::apply(const ContainerPacket& packet) {
   return status;
 }
 
-Status ContainerPlayer::State::look_ahead() {
-  while (!ahead) {
-    if (failed != Status::ok) return std::exchange(failed, Status::ok);
+Status ContainerPlayer::State::read_ahead() {
+  while (!next_packet) {
+    if (postponed != Status::ok) return std::exchange(postponed, Status::ok);
     ContainerPacket packet;
     const Status status = reader.next(packet);
     if (status != Status::ok) return status;
-    if (selected[packet.texture_id]) ahead = std::move(packet);
+    if (selected[packet.texture_id]) next_packet = std::move(packet);
   }
   return Status::ok;
 }
 
 Status ContainerPlayer::State::gather() {
   if (!gathering) {
-    count = at = 0;
-    packed = 0;
+    packet_count = applied = 0;
+    packet_bytes = 0;
     gathering = true;
   }
-  while (count == 0 || (ahead && ahead->frame == packets[0].frame)) {
-    where = {ahead->frame, TextureRegion{ahead->texture_id, ahead->region}};
-    if (count == packets.size()) packets.emplace_back();
-    packets[count] = *std::exchange(ahead, std::nullopt);
-    packed += packets[count++].bytes.size();
-    const Status room = decoders.set_callers_bytes(packed);
+  while (packet_count == 0 || (next_packet && next_packet->frame == packets[0].frame)) {
+    where = {next_packet->frame, TextureRegion{next_packet->texture_id, next_packet->region}};
+    if (packet_count == packets.size()) packets.emplace_back();
+    packets[packet_count] = *std::exchange(next_packet, std::nullopt);
+    packet_bytes += packets[packet_count++].bytes.size();
+    const Status room = decoders.set_callers_bytes(packet_bytes);
     where.memory = decoders.needed();
     if (room != Status::ok) {
       packets.clear();
-      count = packed = 0;
+      packet_count = packet_bytes = 0;
       gathering = false;
       return room;
     }
-    const Status more = look_ahead();
+    const Status more = read_ahead();
     if (more == Status::out_of_memory) return more;
-    if (more != Status::ok) failed = more;
+    if (more != Status::ok) postponed = more;
   }
   gathering = false;
-  packets.resize(count);
+  packets.resize(packet_count);
   const auto order = [&](const ContainerPacket& packet) {
     const bool later =
         is_played(packet.texture_id) && presence_texture(reader.description(), packet.texture_id);
     return std::tuple(later, packet.texture_id, packet.region);
   };
-  const std::span own = std::span(packets).first(count);
+  const std::span own = std::span(packets).first(packet_count);
   std::sort(own.begin(), own.end(), [&](const ContainerPacket& a, const ContainerPacket& b) {
     return order(a) < order(b);
   });
@@ -169,48 +169,49 @@ Status ContainerPlayer::State::gather() {
       [&](const ContainerPacket& a, const ContainerPacket& b) { return order(a) == order(b); });
   if (twice == own.end()) return Status::ok;
   where.part = TextureRegion{twice->texture_id, twice->region};
-  count = 0;
+  packet_count = 0;
   return Status::corrupt;
 }
 
-Status ContainerPlayer::State::go_on(bool decoding) {
+Status ContainerPlayer::State::advance(bool decoding) {
   started = true;
-  if (!begun) {
-    if (const Status status = look_ahead(); status != Status::ok) {
+  if (!in_frame) {
+    if (const Status status = read_ahead(); status != Status::ok) {
       where = {frame, std::nullopt};
       return status;
     }
     decoders.begin_changes(!sought);  // After seek() all blocks count as changed.
-    frame = std::max(ahead->frame, sought.value_or(0));
-    begun = true;
+    frame = std::max(next_packet->frame, sought.value_or(0));
+    in_frame = true;
   }
   Status status = Status::ok;
   while (status == Status::ok) {
-    if (at < count && !gathering) {
-      status = decoding ? apply(packets[at]) : Status::ok;
-      if (status != Status::out_of_memory) ++at;
+    if (applied < packet_count && !gathering) {
+      status = decoding ? apply(packets[applied]) : Status::ok;
+      if (status != Status::out_of_memory) ++applied;
       continue;
     }
-    const Status more = look_ahead();
+    const Status more = read_ahead();
     if (more == Status::out_of_memory) return more;
-    if (gathering || (more == Status::ok && ahead->frame <= frame)) {
-      if (more != Status::ok) failed = more;
+    if (gathering || (more == Status::ok && next_packet->frame <= frame)) {
+      if (more != Status::ok) postponed = more;
       status = gather();
       continue;
     }
     // The frame is complete. An error before the sought frame is reported at once.
     const bool reached = !sought || more == Status::ok || more == Status::end ||
-                         (count > 0 && packets[0].frame == frame);
-    if (more != Status::ok && reached) failed = more;
+                         (packet_count > 0 && packets[0].frame == frame);
+    if (more != Status::ok && reached) postponed = more;
     if (!reached) {
       where = {frame, std::nullopt};
       status = more;
     }
     all_changed = sought.has_value();
     decoders.settle_changes(all_changed);
-    if (count > 0 && packets[0].frame != frame) count = at = 0;  // Those are of earlier frames.
+    if (packet_count > 0 && packets[0].frame != frame)
+      packet_count = applied = 0;  // Those are of earlier frames.
     sought.reset();
-    begun = false;
+    in_frame = false;
     return status;
   }
   all_changed = false;
@@ -219,10 +220,10 @@ Status ContainerPlayer::State::go_on(bool decoding) {
 }
 
 Status ContainerPlayer::next() {
-  return guarded([&] { return state_->go_on(true); });
+  return guarded([&] { return state_->advance(true); });
 }
 Status ContainerPlayer::skip() {
-  return guarded([&] { return state_->go_on(false); });
+  return guarded([&] { return state_->advance(false); });
 }
 
 Status ContainerPlayer::read(std::uint8_t texture, TextureView view) const {
@@ -242,12 +243,12 @@ Status ContainerPlayer::seek(std::uint64_t frame) {
     const Status status = s.reader.seek(frame);
     if (status != Status::ok) return status;
     s.started = true;
-    s.ahead.reset();
-    s.failed = Status::ok;
-    s.count = s.at = 0;
+    s.next_packet.reset();
+    s.postponed = Status::ok;
+    s.packet_count = s.applied = 0;
     s.gathering = false;
-    s.packed = 0;
-    s.begun = false;
+    s.packet_bytes = 0;
+    s.in_frame = false;
     s.sought = frame;
     // Decoders may hold later frames.
     s.decoders.clear();

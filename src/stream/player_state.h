@@ -18,10 +18,11 @@ struct ContainerPlayer::State {
   State(ContainerReader r, TextureDecoders d) noexcept
       : reader(std::move(r)), decoders(std::move(d)) {}
 
-  Status go_on(bool decoding);
-  /// Reads the next selected packet, of any frame, into `ahead`.
-  Status look_ahead();
-  /// Collects the packets of the frame of `ahead`, in the order of application.
+  /// next() and skip().
+  Status advance(bool decoding);
+  /// Reads the next selected packet, of any frame, into `next_packet`, unless it is there.
+  Status read_ahead();
+  /// Collects the packets of the frame of `next_packet`, in the order of application.
   Status gather();
   Status apply(const ContainerPacket& packet);
   [[nodiscard]] bool is_played(std::uint8_t texture) const noexcept {
@@ -33,18 +34,21 @@ struct ContainerPlayer::State {
 
   ContainerReader reader;
   TextureDecoders decoders;
-  std::vector<bool> selected;  ///< by texture
-  std::optional<ContainerPacket> ahead;
-  Status failed = Status::ok;            ///< the reader's error, for a later call
-  std::vector<ContainerPacket> packets;  ///< those of the frame first; the others are spare
-  std::size_t count = 0, at = 0;         ///< packets of the frame, and how many were applied
-  std::uint64_t packed = 0;              ///< bytes of the frame's packets
-  bool gathering = false;                ///< the frame may have further packets
-  bool started = false;                  ///< next(), skip() or seek() was called
-  bool begun = false;                    ///< a frame is begun and not complete
-  bool all_changed = false;
-  std::uint64_t frame = 0;
+  std::vector<bool> selected;                  ///< by texture
+  std::optional<ContainerPacket> next_packet;  ///< read, and not yet in `packets`
+  Status postponed = Status::ok;  ///< the reader's error behind `packets`, for a later call
+
+  // Of the packets that are applied together: those of one frame.
+  std::vector<ContainerPacket> packets;  ///< the first `packet_count`; the others are spare
+  std::size_t packet_count = 0, applied = 0;
+  std::uint64_t packet_bytes = 0;
+  bool gathering = false;  ///< gather() did not end: the frame may have further packets
+
+  std::uint64_t frame = 0;  ///< of the last next() or skip()
+  bool in_frame = false;    ///< that call failed within the frame; the next call continues it
+  bool started = false;     ///< next(), skip() or seek() was called
   std::optional<std::uint64_t> sought;  ///< frame of seek(), until next() reaches it
+  bool all_changed = false;             ///< the last frame is the first after seek()
   Where where;
 };
 

@@ -63,8 +63,8 @@ Status TextureDecoders::decode(std::uint8_t texture, std::uint32_t region,
   if (const auto presence = textures_[texture].presence) {
     const auto existing = this->decoder(*presence, region);
     if (!existing) return existing.status();
-    const Status told = decoder.set_presence((*existing)->records());
-    if (told != Status::ok) return told;
+    const Status status = decoder.set_presence((*existing)->records());
+    if (status != Status::ok) return status;
   }
   if (!noting_) return decoder.decode(packet);
   std::vector<std::uint32_t>& list = changed_[texture];

@@ -48,8 +48,8 @@ Status TextureEncoder::select_list(std::span<const std::uint32_t> list) {
 Status TextureEncoder::select(const ConstTextureView& texture, Selection selection) {
   const auto view = check_view(desc(), texture);
   if (!view) return view.status();
-  const bool told = desc().presence == Presence::all || !presence_.empty();
-  if (!told) return Status::out_of_order;
+  const bool presence_set = desc().presence == Presence::all || !presence_.empty();
+  if (!presence_set) return Status::out_of_order;
   if (selection.type() == Selection::Type::list) {
     if (const Status status = select_list(selection.list()); status != Status::ok) return status;
   } else {
@@ -104,9 +104,9 @@ Status TextureEncoder::take_presence(const TextureEncoder& from) {
   const std::size_t size = presence_bytes(desc());
   presence_.resize(size * stream_.size());
   for (const std::uint32_t block : from.blocks()) {
-    const auto told = from.history_.records(from.stream_.current(block));
-    if (!is_sound(desc(), told)) return Status::presence_invalid;
-    std::copy(told.begin(), told.end(), presence_.data() + block * size);
+    const auto records = from.history_.records(from.stream_.current(block));
+    if (!is_sound(desc(), records)) return Status::presence_invalid;
+    std::copy(records.begin(), records.end(), presence_.data() + block * size);
   }
   return Status::ok;
 }

@@ -10,39 +10,39 @@ namespace {
 /// Merges both packets into one intra packet.
 void make_all_intra(Written& out) {
   Contents all;
-  Contents &known = out.known(), &intra = out.intra();
-  all.reserve(known.blocks.size() + intra.blocks.size());
+  Contents &stayed = out.stayed(), &moved = out.moved();
+  all.reserve(stayed.blocks.size() + moved.blocks.size());
   std::size_t next = 0;
-  for (std::size_t i = 0; i < intra.blocks.size(); ++i) {
-    for (; next < known.blocks.size() && known.blocks[next] < intra.blocks[i]; ++next) {
-      all.add(known.blocks[next], known.ids[next]);
+  for (std::size_t i = 0; i < moved.blocks.size(); ++i) {
+    for (; next < stayed.blocks.size() && stayed.blocks[next] < moved.blocks[i]; ++next) {
+      all.add(stayed.blocks[next], stayed.ids[next]);
     }
-    all.add(intra.blocks[i], intra.ids[i]);
+    all.add(moved.blocks[i], moved.ids[i]);
   }
-  for (; next < known.blocks.size(); ++next) all.add(known.blocks[next], known.ids[next]);
-  intra = std::move(all);
-  known.clear();
+  for (; next < stayed.blocks.size(); ++next) all.add(stayed.blocks[next], stayed.ids[next]);
+  moved = std::move(all);
+  stayed.clear();
 }
 
 }  // namespace
 
 void Written::clear() noexcept {
   first = number = 0;
-  silent.clear();
+  already_held.clear();
   for (WrittenPacket& packet : of) {
-    packet.whole = false;
+    packet.repeats_all = false;
     packet.contents.clear();
     packet.replaced.clear();
   }
 }
 
 UpdateStream::UpdateStream(BlockHistory& history, const TextureDesc& desc,
-                           std::span<const std::uint32_t> sources, PacketChain chain,
+                           std::span<const std::uint32_t> volume_blocks, PacketChain chain,
                            std::uint32_t max_unacknowledged)
     : history_(&history),
       desc_(desc),
       description_(description_hash(desc)),
-      sources_(sources.begin(), sources.end()),
+      volume_blocks_(volume_blocks.begin(), volume_blocks.end()),
       sent_(history, block_count(desc), chain),
       max_unacknowledged_(max_unacknowledged) {}
 
@@ -95,9 +95,9 @@ void UpdateStream::plan_difference(const StreamState* from, std::span<const std:
   out.clear();
   for_each_missing(from, blocks, [&](std::uint32_t block, BlockId id, bool lacks, bool wanted) {
     if (lacks || (!also.empty() && also[block] != 0)) {
-      (from != nullptr && from->moved(block) ? out.intra() : out.known()).add(block, id);
+      (from != nullptr && from->moved(block) ? out.moved() : out.stayed()).add(block, id);
     } else if (wanted) {
-      out.silent.add(block, id);
+      out.already_held.add(block, id);
     }
   });
 }
@@ -106,9 +106,9 @@ Status UpdateStream::write(From from, std::span<const std::uint32_t> blocks,
                            BackendEncoder& backend, PacketWriter& writer, Written& out) {
   const bool keyframe = from == From::keyframe;
   out.clear();
-  out.known().reserve(blocks.size());
+  out.stayed().reserve(blocks.size());
   for (const std::uint32_t block : blocks) {
-    (moved(block) && !keyframe ? out.intra() : out.known()).add(block, current(block));
+    (moved(block) && !keyframe ? out.moved() : out.stayed()).add(block, current(block));
   }
   const Status status = write_planned(keyframe ? nullptr : &sent_, false, backend, writer, out);
   if (status == Status::ok) log_.reserve(log_.size() + out.number);
@@ -120,7 +120,7 @@ Status UpdateStream::write_from(const StreamState* from, std::span<const std::ui
                                 PacketWriter& writer, Written& out) const {
   plan_difference(from, blocks, also, out);
   const Status status = write_planned(from, false, backend, writer, out);
-  for (WrittenPacket& packet : out.packets()) packet.whole = is_keyframe(packet.type);
+  for (WrittenPacket& packet : out.packets()) packet.repeats_all = is_keyframe(packet.type);
   return status;
 }
 
@@ -139,10 +139,10 @@ Status UpdateStream::write_planned(const StreamState* from, bool stand_in, Backe
   PacketChain at = from == nullptr ? sent_.chain : from->chain;
   std::uint32_t last = sequence();
   // A stand-in for a single packet has one sequence number, so it must be one packet.
-  const bool both = !out.known().blocks.empty() && !out.intra().blocks.empty();
+  const bool both = !out.stayed().blocks.empty() && !out.moved().blocks.empty();
   if (stand_in && both && last - at.sequence < kPackets) make_all_intra(out);
-  const std::size_t final = out.intra().blocks.empty() ? 0 : 1;
-  out.first = out.known().blocks.empty() ? final : 0;
+  const std::size_t final = out.moved().blocks.empty() ? 0 : 1;
+  out.first = out.stayed().blocks.empty() ? final : 0;
   for (std::size_t i = out.first; i <= final; ++i) {
     WrittenPacket& written = out.of[i];
     written.type = from == nullptr ? PacketType::keyframe
@@ -153,10 +153,10 @@ Status UpdateStream::write_planned(const StreamState* from, bool stand_in, Backe
     if (!stand_in) head.info.sequence = ++last;
     std::span<const BlockId> held = (from == nullptr ? sent_ : *from).blocks();
     if (i > out.first) {
-      out.held.assign(held.begin(), held.end());
-      const auto& [blocks, ids] = out.known();
-      for (std::size_t k = 0; k < blocks.size(); ++k) out.held[blocks[k]] = ids[k];
-      held = out.held;
+      out.held_after_first.assign(held.begin(), held.end());
+      const auto& [blocks, ids] = out.stayed();
+      for (std::size_t k = 0; k < blocks.size(); ++k) out.held_after_first[blocks[k]] = ids[k];
+      held = out.held_after_first;
     }
     const Status status = writer.write(desc_, *history_, held, written.contents, backend, head,
                                        written.packet, written.decoded);
@@ -173,13 +173,13 @@ void UpdateStream::commit(Written& written) noexcept {
   const std::size_t bytes = block_bytes(desc_);
   for (WrittenPacket& packet : written.packets()) {
     const bool keyframe = is_keyframe(packet.type);
-    if (keyframe && !packet.whole) request_keyframe();
+    if (keyframe && !packet.repeats_all) request_keyframe();
     // resume() cannot go back beyond a keyframe.
     const bool logged = !keyframe && max_unacknowledged_ > 0;
     const auto& [blocks, ids] = packet.contents;
     for (std::size_t i = 0; i < blocks.size(); ++i) {
-      // A whole keyframe may repeat contents of a block's former place.
-      const bool elsewhere = packet.whole && moved(blocks[i]) && ids[i] != current(blocks[i]);
+      // A keyframe that repeats all may have contents of a block's former place.
+      const bool elsewhere = packet.repeats_all && moved(blocks[i]) && ids[i] != current(blocks[i]);
       const BlockId before = sent_.replace(blocks[i], ids[i], elsewhere);
       if (logged) {
         packet.replaced.emplace_back(blocks[i], before);
@@ -198,8 +198,9 @@ void UpdateStream::commit(Written& written) noexcept {
     ++sent_.chain.sequence;
     sent_.chain.checksum = packet.checksum;
   }
-  for (std::size_t i = 0; i < written.silent.blocks.size(); ++i) {
-    history_->release(sent_.replace(written.silent.blocks[i], written.silent.ids[i], false));
+  for (std::size_t i = 0; i < written.already_held.blocks.size(); ++i) {
+    history_->release(
+        sent_.replace(written.already_held.blocks[i], written.already_held.ids[i], false));
   }
   if (log_.size() > max_unacknowledged_) forget_log(log_.size() - max_unacknowledged_);
 }
@@ -213,12 +214,12 @@ void UpdateStream::acknowledge(std::uint32_t sequence) noexcept {
 bool UpdateStream::resume(std::uint32_t sequence, std::uint32_t checksum) noexcept {
   PacketChain& chain = sent_.chain;
   // The log's entries are consecutive and end with the chain's sequence.
-  const bool known =
+  const bool in_log =
       sequence > 0 && sequence <= chain.sequence && chain.sequence - sequence <= log_.size() &&
       checksum == (sequence == chain.sequence
                        ? chain.checksum
                        : log_[log_.size() - (chain.sequence - sequence)].checksum_before);
-  if (!known) {
+  if (!in_log) {
     request_keyframe();
     return false;
   }
@@ -236,7 +237,7 @@ bool UpdateStream::resume(std::uint32_t sequence, std::uint32_t checksum) noexce
 }
 
 std::size_t UpdateStream::memory() const noexcept {
-  std::size_t bytes = sent_.memory() + sources_.capacity() * sizeof(std::uint32_t);
+  std::size_t bytes = sent_.memory() + volume_blocks_.capacity() * sizeof(std::uint32_t);
   for (const auto& packet : log_) {
     bytes += sizeof packet + packet.replaced.capacity() * sizeof packet.replaced[0];
   }

@@ -1,6 +1,6 @@
 // A chain of packets for some blocks of a texture's history: an encoder's or a client's unicast
-// chain for the whole volume, or a shared one for a region. Knows what was sent last, to compare
-// with, to predict from, and to go back to.
+// chain for the repeats_all volume, or a shared one for a region. Knows what was sent last, to
+// compare with, to predict from, and to go back to.
 #pragma once
 
 #include <gicodec/backend.h>
@@ -23,7 +23,7 @@ using Replaced = Vector<std::pair<std::uint32_t, BlockId>>;
 
 struct WrittenPacket {
   PacketType type = PacketType::delta;  ///< of a stand-in: keyframe, delta or intra
-  bool whole = false;                   ///< a keyframe that repeats all blocks sent before
+  bool repeats_all = false;             ///< a keyframe that also has all blocks sent before
   Contents contents = {};
   Packet packet = {};
   std::uint32_t sequence = 0, checksum = 0;
@@ -33,26 +33,29 @@ struct WrittenPacket {
 
 /// Packets that are not committed yet. Reused for its capacity.
 struct Written {
-  WrittenPacket of[2] = {};           ///< blocks that stayed, and blocks that moved (intra)
-  std::size_t first = 0, number = 0;  ///< which of them were written
-  Contents silent = {};               ///< new contents that the receiver holds already: no packet
-  Vector<BlockId> held = {};          ///< the receiver's state between the two packets
+  WrittenPacket of[2] = {};               ///< see stayed() and moved()
+  std::size_t first = 0, number = 0;      ///< those written: `number` from `first` on
+  Contents already_held = {};             ///< selected, but in no packet: the receiver holds them
+  Vector<BlockId> held_after_first = {};  ///< the receiver's state between the two packets
 
   [[nodiscard]] std::span<WrittenPacket> packets() noexcept { return {of + first, number}; }
   [[nodiscard]] std::span<const WrittenPacket> packets() const noexcept {
     return {of + first, number};
   }
-  [[nodiscard]] Contents& known() noexcept { return of[0].contents; }
-  [[nodiscard]] Contents& intra() noexcept { return of[1].contents; }
+  /// Blocks of the first packet, a keyframe or a delta: those at the place where the receiver has
+  /// them; of a keyframe all.
+  [[nodiscard]] Contents& stayed() noexcept { return of[0].contents; }
+  /// Blocks of the second packet, an intra one: those that stand elsewhere since they were sent.
+  [[nodiscard]] Contents& moved() noexcept { return of[1].contents; }
   void clear() noexcept;
 };
 
 class UpdateStream {
  public:
-  /// `sources`: for each block of `desc` its block in the history; empty: the same. `history` must
-  /// outlive the stream.
+  /// `volume_blocks`: for each block of `desc` its block in the volume, by which `history` knows
+  /// it; empty: the same. `history` must outlive the stream.
   UpdateStream(BlockHistory& history, const TextureDesc& desc,
-               std::span<const std::uint32_t> sources, PacketChain chain,
+               std::span<const std::uint32_t> volume_blocks, PacketChain chain,
                std::uint32_t max_unacknowledged);
   UpdateStream(UpdateStream&& other) noexcept;
   UpdateStream& operator=(UpdateStream&&) = delete;
@@ -62,8 +65,9 @@ class UpdateStream {
   [[nodiscard]] std::uint32_t size() const noexcept {
     return static_cast<std::uint32_t>(sent_.blocks().size());
   }
+  /// A block's block in the volume.
   [[nodiscard]] std::uint32_t source(std::uint32_t block) const noexcept {
-    return sources_.empty() ? block : sources_[block];
+    return volume_blocks_.empty() ? block : volume_blocks_[block];
   }
   /// The current contents of a block.
   [[nodiscard]] BlockId current(std::uint32_t block) const noexcept {
@@ -140,7 +144,7 @@ class UpdateStream {
   BlockHistory* history_;
   TextureDesc desc_;
   std::uint32_t description_;  ///< its hash
-  Vector<std::uint32_t> sources_;
+  Vector<std::uint32_t> volume_blocks_;
   StreamState sent_;
   Vector<Unacknowledged> log_;  ///< oldest first
   std::uint32_t max_unacknowledged_;

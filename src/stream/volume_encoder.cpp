@@ -37,8 +37,8 @@ Status VolumeEncoder::State::select(std::size_t group, std::span<const ConstText
   for (std::size_t t = 0; t < own.size(); ++t) {
     TextureEncoder& texture = *own[t];
     if (texture.desc().presence != Presence::all) {
-      const Status told = texture.take_presence(*own[volume.groups[group].presence]);
-      if (told != Status::ok) return told;
+      const Status taken = texture.take_presence(*own[volume.groups[group].presence]);
+      if (taken != Status::ok) return taken;
     }
     if (const Status status = texture.select(views[t], selection); status != Status::ok) {
       return status;

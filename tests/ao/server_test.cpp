@@ -204,17 +204,17 @@ TEST(AoSource, GivesFramesOfItsVolumeAndSaysWhatIsLess) {
     return kTracedAoPoints.trace(
         {test::rolling_room(), settings({"max-points=500", "rays=8"}), 1, threads});
   };
-  const kinds::Source source = trace(1), other = trace(3);
-  ASSERT_EQ(source.volumes.size(), 1U);
-  EXPECT_FALSE(source.remarks.empty());
-  EXPECT_NE(source.remarks.front().find("max-points"), std::string::npos);
-  const VolumeDesc& volume = source.volumes.front().desc;
+  const kinds::Feed feed = trace(1), other = trace(3);
+  ASSERT_EQ(feed.volumes.size(), 1U);
+  EXPECT_FALSE(feed.remarks.empty());
+  EXPECT_NE(feed.remarks.front().find("max-points"), std::string::npos);
+  const VolumeDesc& volume = feed.volumes.front().desc;
   EXPECT_EQ(validate(volume), Status::ok);
-  EXPECT_EQ(validate(source.volumes.front().geometry), Status::ok);
+  EXPECT_EQ(validate(feed.volumes.front().geometry), Status::ok);
   for (const double time : {0.0, 1.0}) {
-    const kinds::SourceFrame frame = source.next({time, {Viewpoint{}}});
+    const kinds::FeedFrame frame = feed.next({time, {Viewpoint{}}});
     const auto& textures = frame.volumes.at(0).textures;
-    const auto named = source.volumes.front().textures();
+    const auto named = feed.volumes.front().textures();
     ASSERT_EQ(textures.size(), named.size());
     for (std::size_t i = 0; i < named.size(); ++i) {
       EXPECT_EQ(textures[i].size(), texture_bytes(named[i].desc));
@@ -226,11 +226,11 @@ TEST(AoSource, GivesFramesOfItsVolumeAndSaysWhatIsLess) {
 TEST(AoSource, UpdatesAllForThoseWhoDoNotTellWhereTheyLook) {
   // The ball rolls behind the viewer.
   const Viewpoint away{.eye = {0, 0, -1}, .target = {0, 0, -8}};
-  const auto after = [](const kinds::SourceRequest& request) {
-    const kinds::Source source = kTracedAoPoints.trace(
+  const auto after = [](const kinds::FeedRequest& request) {
+    const kinds::Feed feed = kTracedAoPoints.trace(
         {test::rolling_room(), settings({"points=8", "rays=8", "view-margin=5"})});
-    static_cast<void>(source.next({0, {}}));
-    return source.next(request).volumes.at(0).textures;
+    static_cast<void>(feed.next({0, {}}));
+    return feed.next(request).volumes.at(0).textures;
   };
   const auto all = after({2.5, {}});
   EXPECT_NE(after({2.5, {away}}), all);

@@ -3,8 +3,8 @@
 #include "common/container_input.h"
 #include "ddgi/rooms.h"
 #include "dump/error.h"
+#include "programs/feed_container.h"
 #include "programs/kind_flags.h"
-#include "programs/source_container.h"
 #include "tools/dump_support.h"
 
 #include <gicodec/engines.h>
@@ -107,24 +107,24 @@ TEST(ProbeContainers, HoldEveryFrame) {
   for (std::vector<std::string> given : all) {
     SCOPED_TRACE(given.empty() ? "" : given.front());
     given.emplace_back("rays=16");
-    kinds::Source source = kTracedProbes.trace({ddgi::test::busy_room(), settings(given), 1, 2});
-    source.scene = {"room", 1};
-    kinds::SourceContainer container(path, source, {1, 4}, "native");
-    std::vector<kinds::SourceFrame> frames;
+    kinds::Feed feed = kTracedProbes.trace({ddgi::test::busy_room(), settings(given), 1, 2});
+    feed.scene = {"room", 1};
+    kinds::FeedContainer container(path, feed, {1, 4}, "native");
+    std::vector<kinds::FeedFrame> frames;
     for (std::uint64_t frame = 0; frame < 3; ++frame) {
-      frames.push_back(source.next({1 + static_cast<double>(frame) / 4, {}}));
+      frames.push_back(feed.next({1 + static_cast<double>(frame) / 4, {}}));
       container.add(frame, frames.back());
     }
     container.finish();
     tools::ContainerInput input(path);
-    for (const kinds::SourceFrame& frame : frames) {
+    for (const kinds::FeedFrame& frame : frames) {
       ASSERT_TRUE(input.next_frame());
       std::size_t id = 0;
-      for (std::size_t v = 0; v < source.volumes.size(); ++v) {
+      for (std::size_t v = 0; v < feed.volumes.size(); ++v) {
         for (const auto& texels : frame.volumes[v].textures) {
           const tools::DumpInfo info = input.textures()[id].info_at(input.frame());
           EXPECT_EQ(input.texels(id++), texels);
-          if (source.volumes[v].files.empty()) continue;
+          if (feed.volumes[v].files.empty()) continue;
           const auto said = [&](const char* name) {
             const tools::Attribute* found = find_attribute(info.attributes, name);
             return found == nullptr ? "nothing" : found->value;

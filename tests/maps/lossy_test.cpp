@@ -4,7 +4,7 @@
 #include "common/container_input.h"
 #include "dump/error.h"
 #include "halves.h"
-#include "programs/source_container.h"
+#include "programs/feed_container.h"
 
 #include <gicodec/inspect.h>
 #include <gicodec/volume_decoder.h>
@@ -100,12 +100,12 @@ TEST(LossyMaps, ContainersSayIt) {
   const ddgi::Scene scene = test::halves();
   const std::vector<std::string> set{"size=64", "way=map",  "gather=texels",
                                      "rays=16", "warmup=1", "qp=30"};
-  kinds::Source source = kTracedMaps.trace({scene, {kTracedMaps.name, kTracedMaps.settings, set}});
+  kinds::Feed feed = kTracedMaps.trace({scene, {kTracedMaps.name, kTracedMaps.settings, set}});
   tools::TemporaryDirectory directory;
   const std::string path = directory.path("x.gic");
-  kinds::SourceContainer container(path, source, {0, 5}, "native");
+  kinds::FeedContainer container(path, feed, {0, 5}, "native");
   for (int frame = 0; frame < 3; ++frame) {
-    container.add(static_cast<std::uint64_t>(frame), source.next({.time = frame * 0.2}));
+    container.add(static_cast<std::uint64_t>(frame), feed.next({.time = frame * 0.2}));
   }
   container.finish();
   tools::ContainerInput input(path);

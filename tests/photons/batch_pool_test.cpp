@@ -174,10 +174,10 @@ TEST(PhotonSource, FramesAreTheSameForAnyNumberOfThreads) {
     request.scene = two_lights();
     request.settings = settings({"photons=300", "per-watt=100", "max-batches=9", "form=R"});
     request.threads = threads;
-    kinds::Source source = trace(std::move(request));
+    kinds::Feed feed = trace(std::move(request));
     std::vector<std::vector<std::vector<std::byte>>> all;
     for (const double time : {0, 0, 1, 3, 4, 5, 0}) {
-      all.push_back(source.next({time, {}}).volumes[0].textures);
+      all.push_back(feed.next({time, {}}).volumes[0].textures);
     }
     return all;
   };
@@ -191,11 +191,11 @@ TEST(PhotonSource, SaysWhatIsLeftOut) {
   kinds::TraceRequest request;
   request.scene = two_lights();
   request.settings = settings({"photons=300", "max-batches=1"});
-  kinds::Source source = trace(std::move(request));
-  ASSERT_EQ(source.remarks.size(), 1U);
-  EXPECT_NE(source.remarks[0].find("sky"), std::string::npos);
-  EXPECT_EQ(source.next({0, {}}).remarks.size(), 1U);
-  EXPECT_TRUE(source.next({0, {}}).remarks.empty());
+  kinds::Feed feed = trace(std::move(request));
+  ASSERT_EQ(feed.remarks.size(), 1U);
+  EXPECT_NE(feed.remarks[0].find("sky"), std::string::npos);
+  EXPECT_EQ(feed.next({0, {}}).remarks.size(), 1U);
+  EXPECT_TRUE(feed.next({0, {}}).remarks.empty());
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ using namespace test;
 
 constexpr std::uint32_t kCapacity = 64;
 
-kinds::SourceVolume small_volume(std::uint32_t batches, PhotonForm form = PhotonForm::halves) {
+kinds::FeedVolume small_volume(std::uint32_t batches, PhotonForm form = PhotonForm::halves) {
   return {"photons", {{batches, 1, 1}}, *photon_volume(batches, kCapacity, form)};
 }
 
@@ -58,15 +58,15 @@ bool same(const ddgi::Picture& a, const ddgi::Picture& b) {
   return std::equal(a.pixels.begin(), a.pixels.end(), b.pixels.begin(), b.pixels.end());
 }
 
-/// A room's photons as they come from the source, of so many updates.
+/// A room's photons as they come from the feed, of so many updates.
 Held traced(const Scene& scene, double time, unsigned updates,
             const std::vector<std::string>& given) {
   kinds::TraceRequest request;
   request.scene = scene;
   request.settings = settings(given);
-  kinds::Source source = trace(std::move(request));
-  Held held(source.volumes[0]);
-  for (unsigned i = 0; i < updates; ++i) held.texels = source.next({time, {}}).volumes[0].textures;
+  kinds::Feed feed = trace(std::move(request));
+  Held held(feed.volumes[0]);
+  for (unsigned i = 0; i < updates; ++i) held.texels = feed.next({time, {}}).volumes[0].textures;
   return held;
 }
 

@@ -50,11 +50,11 @@ inline kinds::Settings settings(const std::vector<std::string>& given) {
 
 /// A volume's textures as a client holds them.
 struct Held {
-  kinds::SourceVolume volume;
+  kinds::FeedVolume volume;
   std::vector<std::vector<std::byte>> texels;
   std::vector<std::uint8_t> received = {};
 
-  explicit Held(kinds::SourceVolume volume_in) : volume(std::move(volume_in)) {
+  explicit Held(kinds::FeedVolume volume_in) : volume(std::move(volume_in)) {
     for (const NamedTexture& texture : volume.textures()) {
       texels.emplace_back(static_cast<std::size_t>(texture_bytes(texture.desc)));
     }

@@ -303,12 +303,12 @@ class World {
           const auto held = held_of(receiver, stream.texture, block);
           const auto& had = before.at({stream.texture, block});
           if (!held || held == had) continue;
-          std::size_t since = 0;
+          std::size_t oldest = 0;
           const bool current = *held == volume_.block(stream.texture, block, true);
           const bool due =
               distributor_->updates() % volume_.streamed()[stream.texture].interval == 0;
           if (current && due && receiver.budget.bytes == 0 && receiver.budget.blocks == 0) {
-            since = past_.size() - 1;
+            oldest = past_.size() - 1;
           } else if (current && had && receiver.delivery == Delivery::unicast) {
             const auto end = volume_.desc().groups[group].bundled ? volume_.first_of(group + 1)
                                                                   : stream.texture + 1;
@@ -318,8 +318,8 @@ class World {
               }
               return false;
             };
-            since = past_.size();
-            while (since > 0 && differs(past_[since - 1])) --since;
+            oldest = past_.size();
+            while (oldest > 0 && differs(past_[oldest - 1])) --oldest;
           }
           for (const std::uint32_t name : volume_.dependencies(group, *held)) {
             if (!active_[names].empty() && active_[names][name] == 0) continue;
@@ -328,7 +328,7 @@ class World {
               const auto there = held_of(receiver, id, name);
               ASSERT_TRUE(there.has_value());
               EXPECT_TRUE(
-                  std::any_of(past_.begin() + static_cast<std::ptrdiff_t>(since), past_.end(),
+                  std::any_of(past_.begin() + static_cast<std::ptrdiff_t>(oldest), past_.end(),
                               [&](const Contents& past) { return past[id][name] == *there; }));
             }
           }

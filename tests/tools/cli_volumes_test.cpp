@@ -410,7 +410,7 @@ TEST_F(CliVolumes, ErrorsThatAreToldAreShown) {
   expect_parts(program_.succeed({"info", "y.gic"}).out, {"LOSSY (off by at most 3)"});
   description_.textures[0].largest_error = std::numeric_limits<float>::infinity();
   write("x.gic");
-  expect_parts(program_.succeed({"info", "x.gic"}).out, {"LOSSY (by how much is not told)"});
+  expect_parts(program_.succeed({"info", "x.gic"}).out, {"LOSSY (by how much is unknown)"});
 }
 
 TEST_F(CliVolumes, FilesThatGrowSaySo) {

@@ -256,16 +256,16 @@ TEST(VectorSource, GivesFramesOfItsVolume) {
            settings({"vertices=4x3x2", "rays=8", floats ? "form=floats" : "form=quantised"}), 1,
            threads});
     };
-    const kinds::Source source = trace(1), other = trace(3);
-    ASSERT_EQ(source.volumes.size(), 1U);
-    ASSERT_FALSE(source.remarks.empty());
-    EXPECT_NE(source.remarks.front().find("4x3x2 vertices"), std::string::npos);
-    const kinds::SourceVolume& volume = source.volumes.front();
+    const kinds::Feed feed = trace(1), other = trace(3);
+    ASSERT_EQ(feed.volumes.size(), 1U);
+    ASSERT_FALSE(feed.remarks.empty());
+    EXPECT_NE(feed.remarks.front().find("4x3x2 vertices"), std::string::npos);
+    const kinds::FeedVolume& volume = feed.volumes.front();
     EXPECT_EQ(validate(volume.desc), Status::ok);
     EXPECT_EQ(volume.desc.kind, kKindIrradianceVectors);
     EXPECT_EQ(validate(volume.geometry), Status::ok);
     for (const double time : {0.0, 1.0}) {
-      const auto textures = source.next({time, {}}).volumes.at(0).textures;
+      const auto textures = feed.next({time, {}}).volumes.at(0).textures;
       ASSERT_EQ(textures.size(), 1U);
       EXPECT_EQ(textures[0].size(), texture_bytes(volume.textures()[0].desc));
       EXPECT_EQ(textures, other.next({time, {}}).volumes.at(0).textures);

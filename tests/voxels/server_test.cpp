@@ -158,18 +158,18 @@ TEST(VoxelSource, GivesFramesOfItsVolume) {
     kinds::TraceRequest request;
     request.scene = ddgi::test::busy_room();
     request.settings = settings({"size=1.5", "rays=2", "warmup=0", "form=halves", brick});
-    const kinds::Source source = kTracedVoxels.trace(std::move(request));
-    ASSERT_EQ(source.volumes.size(), 1U);
-    const kinds::SourceVolume& volume = source.volumes[0];
+    const kinds::Feed feed = kTracedVoxels.trace(std::move(request));
+    ASSERT_EQ(feed.volumes.size(), 1U);
+    const kinds::FeedVolume& volume = feed.volumes[0];
     EXPECT_EQ(validate(volume.desc), Status::ok);
     EXPECT_EQ(volume.geometry.spacing, (Position{1.5F, 1.5F, 1.5F}));
     EXPECT_EQ(validate(volume.geometry), Status::ok);
-    ASSERT_EQ(source.remarks.size(), 1U);
-    EXPECT_NE(source.remarks[0].find(" of 1.5 m in "), std::string::npos) << source.remarks[0];
-    EXPECT_NE(source.remarks[0].find(" of 3 m in "), std::string::npos);
+    ASSERT_EQ(feed.remarks.size(), 1U);
+    EXPECT_NE(feed.remarks[0].find(" of 1.5 m in "), std::string::npos) << feed.remarks[0];
+    EXPECT_NE(feed.remarks[0].find(" of 3 m in "), std::string::npos);
     const auto textures = volume.textures();
     for (const double time : {0.0, 1.0}) {
-      const kinds::SourceFrame frame = source.next({time, {}});
+      const kinds::FeedFrame frame = feed.next({time, {}});
       EXPECT_TRUE(frame.remarks.empty());
       ASSERT_EQ(frame.volumes[0].textures.size(), 2U);
       for (std::size_t i = 0; i < 2; ++i) {
@@ -183,12 +183,12 @@ TEST(VoxelSource, SaysWhatIsLeftOut) {
   kinds::TraceRequest request;
   request.scene = ddgi::test::busy_room();
   request.settings = settings({"size=1.5", "rays=2", "warmup=0", "bricks=9"});
-  const kinds::Source source = kTracedVoxels.trace(std::move(request));
-  const auto remarks = source.next({0, {}}).remarks;
+  const kinds::Feed feed = kTracedVoxels.trace(std::move(request));
+  const auto remarks = feed.next({0, {}}).remarks;
   ASSERT_EQ(remarks.size(), 1U);
   const std::size_t at = remarks[0].find("--set bricks=");
   ASSERT_NE(at, std::string::npos) << remarks[0];
-  EXPECT_TRUE(source.next({0, {}}).remarks.empty()) << "said once";
+  EXPECT_TRUE(feed.next({0, {}}).remarks.empty()) << "said once";
   // Its advice is enough.
   const std::string advice = remarks[0].substr(at + 6, remarks[0].find(' ', at + 6) - at - 6);
   kinds::TraceRequest again;

@@ -23,7 +23,7 @@ constexpr float kAround = 1;  ///< metres around the scene's volume
 constexpr float kCellSide = 1.6F;
 
 /// A mesh in the world at rest, as much of it as gets points.
-struct Source {
+struct SampledMesh {
   const Mesh& mesh;
   Affine transform;
   const ddgi::Box* box;  ///< nullptr: all of it
@@ -33,17 +33,17 @@ struct Source {
 };
 
 /// The part of a triangle within the box, by weights of its second and third corner.
-std::vector<Vec2> part_inside(const Source& source, std::size_t triangle) {
+std::vector<Vec2> part_inside(const SampledMesh& sampled, std::size_t triangle) {
   std::vector<Vec2> part{{0, 0}, {1, 0}, {0, 1}};
-  if (source.box == nullptr) return part;
-  const auto [a, b, c] = source.mesh.triangles[triangle];
-  const auto& p = source.mesh.positions;
-  const auto corner = [&](std::uint32_t i) { return source.transform.point(p[i]); };
+  if (sampled.box == nullptr) return part;
+  const auto [a, b, c] = sampled.mesh.triangles[triangle];
+  const auto& p = sampled.mesh.positions;
+  const auto corner = [&](std::uint32_t i) { return sampled.transform.point(p[i]); };
   const Vec3 origin = corner(a), u = corner(b) - origin, v = corner(c) - origin;
   for (unsigned plane = 0; plane < 6; ++plane) {
     const unsigned axis = plane / 2;
     const bool upper = plane % 2 == 1;
-    const float limit = coordinate(upper ? source.box->hi : source.box->lo, axis);
+    const float limit = coordinate(upper ? sampled.box->hi : sampled.box->lo, axis);
     const auto depth = [&](Vec2 w) {
       const float at =
           coordinate(origin, axis) + w.x * coordinate(u, axis) + w.y * coordinate(v, axis);
@@ -75,27 +75,27 @@ Vec3 doubled_area(const Mesh& mesh, std::size_t triangle) {
   return cross(p[b] - p[a], p[c] - p[a]);
 }
 
-void add_areas(Source& source) {
+void add_areas(SampledMesh& sampled) {
   double sum = 0;
-  for (std::size_t i = 0; i < source.mesh.triangles.size(); ++i) {
-    const auto part = part_inside(source, i);
+  for (std::size_t i = 0; i < sampled.mesh.triangles.size(); ++i) {
+    const auto part = part_inside(sampled, i);
     double share = 0;
     for (std::size_t j = 0; j + 2 < part.size(); ++j) share += share_of(part, j);
-    sum += share * double{length(doubled_area(source.mesh, i))} / 2;
-    source.areas.push_back(sum);
+    sum += share * double{length(doubled_area(sampled.mesh, i))} / 2;
+    sampled.areas.push_back(sum);
   }
 }
 
-SurfacePoint sample(const Source& source, std::uint32_t seed, std::uint32_t number,
+SurfacePoint sample(const SampledMesh& sampled, std::uint32_t seed, std::uint32_t number,
                     bool other_side) {
   const auto random = [&](std::uint32_t dimension) {
     return ddgi::unit(ddgi::hash(ddgi::hash(seed, dimension), number));
   };
   // Two numbers, since one has but 24 bits for what may be millions of triangles.
-  const double at = (double{random(0)} + double{random(1)} / (1 << 24)) * source.areas.back();
-  const auto found = std::ranges::upper_bound(source.areas, at) - source.areas.begin();
-  const auto triangle = std::min(static_cast<std::size_t>(found), source.areas.size() - 1);
-  const auto part = part_inside(source, triangle);
+  const double at = (double{random(0)} + double{random(1)} / (1 << 24)) * sampled.areas.back();
+  const auto found = std::ranges::upper_bound(sampled.areas, at) - sampled.areas.begin();
+  const auto triangle = std::min(static_cast<std::size_t>(found), sampled.areas.size() - 1);
+  const auto part = part_inside(sampled, triangle);
   double all = 0;
   for (std::size_t i = 0; i + 2 < part.size(); ++i) all += share_of(part, i);
   std::size_t piece = 0;
@@ -103,7 +103,7 @@ SurfacePoint sample(const Source& source, std::uint32_t seed, std::uint32_t numb
     left -= share_of(part, piece);
     if (left < 0) break;
   }
-  const Mesh& mesh = source.mesh;
+  const Mesh& mesh = sampled.mesh;
   const auto [a, b, c] = mesh.triangles[triangle];
   Vec2 w;
   if (part.size() >= 3) {
@@ -140,22 +140,22 @@ AoGrid grid_of(const PointInstance& instance, float distance, double area, float
   return grid;
 }
 
-void fill(PointInstance& instance, const Source& source, const GenerationOptions& options,
+void fill(PointInstance& instance, const SampledMesh& sampled, const GenerationOptions& options,
           double points, ddgi::ThreadPool& pool) {
-  const double area = source.areas.back(), density = points * source.scale * source.scale;
+  const double area = sampled.areas.back(), density = points * sampled.scale * sampled.scale;
   const auto kept = std::max(std::size_t{1}, static_cast<std::size_t>(area * density / 2 + 0.5));
-  const std::size_t sides = source.two_sided ? 2 : 1;
+  const std::size_t sides = sampled.two_sided ? 2 : 1;
   std::vector<SurfacePoint> samples(2 * kept * sides);
   const std::uint32_t seed = ddgi::hash(ddgi::hash(options.seed, instance.object), instance.mesh);
   kinds::for_all(samples.size(), pool, [&](std::size_t i) {
-    samples[i] = sample(source, seed, static_cast<std::uint32_t>(i), i >= 2 * kept);
+    samples[i] = sample(sampled, seed, static_cast<std::uint32_t>(i), i >= 2 * kept);
   });
   const float r_max = largest_radius(area, static_cast<double>(kept));
   for (const std::uint32_t i : eliminate(samples, kept * sides, r_max, pool)) {
     instance.points.push_back(samples[i]);
   }
   instance.grid =
-      grid_of(instance, 2 * r_max, area, options.margin / static_cast<float>(source.scale));
+      grid_of(instance, 2 * r_max, area, options.margin / static_cast<float>(sampled.scale));
 }
 
 }  // namespace
@@ -171,23 +171,23 @@ GeneratedPoints generate_points(const ddgi::Scene& scene, const GenerationOption
   GeneratedPoints out{{}, options.points, {}};
   const Vec3 around{kAround, kAround, kAround};
   const ddgi::Box box{scene.volume.lo - around, scene.volume.hi + around};
-  std::vector<Source> sources;
+  std::vector<SampledMesh> sampled_meshes;
   double square_metres = 0;
   for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
     const ddgi::Object& object = scene.objects[o];
     const bool clipped = !options.outside && !object.dynamic && !scene.volume.empty();
     for (const std::uint32_t m : object.meshes) {
       const Mesh& mesh = scene.meshes[m];
-      Source source{mesh, object.transform, clipped ? &box : nullptr,
-                    std::cbrt(std::abs(double{object.transform.determinant()})),
-                    scene.materials[mesh.material].two_sided};
-      add_areas(source);
-      const double area = source.areas.empty() ? 0 : source.areas.back();
-      if (!(area > 0) || !std::isfinite(area) || !(source.scale > 0)) continue;
-      square_metres += area * source.scale * source.scale * (source.two_sided ? 2 : 1);
+      SampledMesh sampled{mesh, object.transform, clipped ? &box : nullptr,
+                          std::cbrt(std::abs(double{object.transform.determinant()})),
+                          scene.materials[mesh.material].two_sided};
+      add_areas(sampled);
+      const double area = sampled.areas.empty() ? 0 : sampled.areas.back();
+      if (!(area > 0) || !std::isfinite(area) || !(sampled.scale > 0)) continue;
+      square_metres += area * sampled.scale * sampled.scale * (sampled.two_sided ? 2 : 1);
       out.instances.emplace_back().object = o;
       out.instances.back().mesh = m;
-      sources.push_back(std::move(source));
+      sampled_meshes.push_back(std::move(sampled));
     }
   }
   const auto most = static_cast<double>(options.max_points);
@@ -198,8 +198,8 @@ GeneratedPoints generate_points(const ddgi::Scene& scene, const GenerationOption
                     "of {:.0f} m²; --set max-points=N allows others",
                     out.points, options.points, options.max_points, square_metres));
   }
-  for (std::size_t i = 0; i < sources.size(); ++i) {
-    fill(out.instances[i], sources[i], options, out.points, pool);
+  for (std::size_t i = 0; i < sampled_meshes.size(); ++i) {
+    fill(out.instances[i], sampled_meshes[i], options, out.points, pool);
   }
   return out;
 }

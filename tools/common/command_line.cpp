@@ -234,9 +234,8 @@ std::optional<Exit> Command::parse(int argc, const char* const* argv) {
     const std::string unknown = unknown_of(*app_, argc, argv);
     const bool incomplete = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr ||
                             dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
-    if (incomplete && !unknown.empty())
-      fail(Exit::usage, "not expected: {}; --help tells more", unknown);
-    if (error.get_exit_code() != 0) fail(Exit::usage, "{}; --help tells more", error.what());
+    if (incomplete && !unknown.empty()) fail(Exit::usage, "not expected: {}; see --help", unknown);
+    if (error.get_exit_code() != 0) fail(Exit::usage, "{}; see --help", error.what());
     app_->exit(error);
     const bool read_enough = !std::cout.flush() && errno == EPIPE;  // "--help | head"
     if (!std::cout && !read_enough) fail(Exit::io, "standard output: cannot be written");

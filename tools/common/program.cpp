@@ -20,7 +20,7 @@ std::atomic<int> caught_signal = 0;
 static_assert(std::atomic<int>::is_always_lock_free);
 
 extern "C" void note_signal(int signal) { caught_signal = signal; }
-/// Until the program ends: it may have begun to wait for a pipe right after it was told to end.
+/// Until the program ends: it may have begun to wait for a pipe right after the signal to end.
 extern "C" void wake(int) { alarm(1); }
 extern "C" void note_and_wake(int signal) {
   caught_signal = signal;

@@ -26,7 +26,7 @@ enum class Interrupts : std::uint8_t {
 };
 
 /// Parses and runs; returns what main() is to return. Errors go to standard error behind the
-/// program's name. `formats`: what --version tells besides.
+/// program's name. `formats`: what --version prints besides.
 int run_program(Command& app, int argc, char** argv, const std::function<Exit()>& run,
                 Interrupts interrupts = Interrupts::noted, const std::string& formats = "");
 

@@ -115,20 +115,20 @@ std::string block_text(const BlockShape& block) {
 
 std::string error_text(float largest_error) {
   if (largest_error == 0) return "";
-  if (std::isinf(largest_error)) return "by how much is not told";
+  if (std::isinf(largest_error)) return "by how much is unknown";
   return fmt::format("{}{}{}", kOffBy, largest_error, largest_error < 1 ? kRelatively : "");
 }
 
 float error_of(std::string_view text) {
   float error = 0;
-  const bool told = text.starts_with(kOffBy);
-  if (told) text.remove_prefix(kOffBy.size());
+  const bool bounded = text.starts_with(kOffBy);
+  if (bounded) text.remove_prefix(kOffBy.size());
   const bool relative = text.ends_with(kRelatively);
   if (relative) text.remove_suffix(kRelatively.size());
   const char* const end = text.data() + text.size();
   const auto [next, failure] = std::from_chars(text.data(), end, error);
   const bool whole =
-      told && failure == std::errc() && next == end && error > 0 && (error < 1) == relative;
+      bounded && failure == std::errc() && next == end && error > 0 && (error < 1) == relative;
   return whole ? error : std::numeric_limits<float>::infinity();
 }
 

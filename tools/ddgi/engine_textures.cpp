@@ -15,7 +15,7 @@ namespace {
 using Channels = std::array<float, 4>;
 
 /// A probe as textures see it.
-struct Source {
+struct ProbeSample {
   const ProbeLight& light;
   std::uint32_t valid;  ///< bit i: the neighbour at (i & 1, i >> 1 & 1, i >> 2) is active
 };
@@ -37,9 +37,9 @@ float ratio(float factor, float constant, float scale) {
 constexpr float kScale1 = 2, kScale2 = 3.5777088F;  // ProbeBrickPool's decoder: 4 / √5 · 2
 
 /// L0_L1Rx, L1G_L1Ry, L1B_L1Rz, L2_0 … L2_3, Validity, SkyOcclusionL0L1.
-Channels unity(std::string_view name, const Source& source) {
-  const auto r = factors_of(source.light, 0), g = factors_of(source.light, 1),
-             b = factors_of(source.light, 2);
+Channels unity(std::string_view name, const ProbeSample& sample) {
+  const auto r = factors_of(sample.light, 0), g = factors_of(sample.light, 1),
+             b = factors_of(sample.light, 2);
   const auto first = [](const std::array<float, 9>& f, std::size_t k) {
     return ratio(f[k], f[0], kScale1);
   };
@@ -56,15 +56,15 @@ Channels unity(std::string_view name, const Source& source) {
   if (name == "L2_1") return band(g);
   if (name == "L2_2") return band(b);
   if (name == "L2_3") return {second(r, 8), second(g, 8), second(b, 8), 1};
-  if (name == "Validity") return {static_cast<float>(source.valid) / 255.0F, 0, 0, 0};
-  const auto& sky = source.light.sky;
+  if (name == "Validity") return {static_cast<float>(sample.valid) / 255.0F, 0, 0, 0};
+  const auto& sky = sample.light.sky;
   return {sky[0], sky[1], sky[2], sky[3]};
 }
 
 /// AmbientVector, SHCoefficients0 … 5 (two for each colour), SkyBentNormal,
 /// DirectionalLightShadowing.
-Channels unreal(std::string_view name, const Source& source) {
-  const ProbeLight& light = source.light;
+Channels unreal(std::string_view name, const ProbeSample& sample) {
+  const ProbeLight& light = sample.light;
   if (name == "AmbientVector") return {light.sh[0].x, light.sh[0].y, light.sh[0].z, 0};
   if (name.starts_with("SHCoefficients")) {
     const auto texture = static_cast<std::size_t>(name.back() - '0');
@@ -83,12 +83,12 @@ Channels unreal(std::string_view name, const Source& source) {
 }
 
 /// Slices of a layer: the constant, then y, z and x against four times that.
-Channels godot(std::size_t slice, const Source& source) {
+Channels godot(std::size_t slice, const ProbeSample& sample) {
   constexpr std::array<std::size_t, 4> kFactors{0, 2, 3, 1};
   constexpr float kScale = 4;
   Channels channels{0, 0, 0, 1};
   for (std::size_t colour = 0; colour < 3; ++colour) {
-    const auto f = factors_of(source.light, colour);
+    const auto f = factors_of(sample.light, colour);
     channels[colour] = slice == 0 ? f[0] : ratio(f[kFactors[slice]], f[0], kScale);
   }
   return channels;
@@ -109,14 +109,14 @@ std::byte* texel_at(EngineTexture& texture, std::uint64_t x, std::uint64_t y, st
   return &texture.texels[((z * size.height + y) * size.width + x) * texture.desc.record.bytes];
 }
 
-/// Sources of all probes.
-class Sources {
+/// The samples of all probes.
+class ProbeSamples {
  public:
-  Sources(Grid probes, const std::vector<ProbeLight>& light,
-          const std::vector<std::uint8_t>& active)
+  ProbeSamples(Grid probes, const std::vector<ProbeLight>& light,
+               const std::vector<std::uint8_t>& active)
       : probes_(probes), light_(light), active_(active) {}
 
-  [[nodiscard]] Source at(std::uint32_t x, std::uint32_t y, std::uint32_t z) const {
+  [[nodiscard]] ProbeSample at(std::uint32_t x, std::uint32_t y, std::uint32_t z) const {
     std::uint32_t valid = 0;
     for (std::uint32_t corner = 0; corner < 8; ++corner) {
       const std::uint32_t probe = index(std::min(x + (corner & 1), probes_.x - 1),
@@ -146,15 +146,16 @@ void for_places(Grid grid, Visit&& visit) {
   }
 }
 
-void fill_bricks(EngineTexture& texture, Grid bricks, std::uint32_t cells, const Sources& sources,
-                 Channels (*channels)(std::string_view, const Source&)) {
+void fill_bricks(EngineTexture& texture, Grid bricks, std::uint32_t cells,
+                 const ProbeSamples& samples,
+                 Channels (*channels)(std::string_view, const ProbeSample&)) {
   const BlockShape side = texture.desc.block;
   for_places(bricks, [&](std::uint32_t bx, std::uint32_t by, std::uint32_t bz) {
     const BlockOrigin at = block_origin(texture.desc, bx + bricks.x * (by + bricks.y * bz));
     for_places({side.x, side.y, side.z}, [&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
-      const Source source = sources.at(cells * bx + x, cells * by + y, cells * bz + z);
+      const ProbeSample sample = samples.at(cells * bx + x, cells * by + y, cells * bz + z);
       store_texel(texture.desc.record, texel_at(texture, at.x + x, at.y + y, at.slice + z),
-                  channels(texture.name, source));
+                  channels(texture.name, sample));
     });
   });
 }
@@ -173,9 +174,9 @@ void fill_indirection(EngineTexture& texture, const TextureDesc& brick, Grid cel
   });
 }
 
-void fill_cubes(EngineTexture& texture, Grid voxels, const Sources& sources) {
+void fill_cubes(EngineTexture& texture, Grid voxels, const ProbeSamples& samples) {
   for_places(voxels, [&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
-    const auto& cube = sources.at(x, y, z).light.cube;
+    const auto& cube = samples.at(x, y, z).light.cube;
     for (std::uint32_t face = 0; face < cube.size(); ++face) {
       std::byte* texel = texel_at(texture, x, y + face % 2 * voxels.y, z + face / 2 * voxels.z);
       store_texel(texture.desc.record, texel, {cube[face].x, cube[face].y, cube[face].z, 0});
@@ -183,12 +184,12 @@ void fill_cubes(EngineTexture& texture, Grid voxels, const Sources& sources) {
   });
 }
 
-void fill_lightmap(EngineTexture& texture, Grid texels, const Sources& sources) {
+void fill_lightmap(EngineTexture& texture, Grid texels, const ProbeSamples& samples) {
   for_places(texels, [&](std::uint32_t x, std::uint32_t y, std::uint32_t layer) {
-    const Source source = sources.at(x, layer, y);
+    const ProbeSample sample = samples.at(x, layer, y);
     for (std::uint32_t slice = 0; slice < 4; ++slice) {
       store_texel(texture.desc.record, texel_at(texture, x, y, 4 * layer + slice),
-                  godot(slice, source));
+                  godot(slice, sample));
     }
   });
 }
@@ -276,27 +277,27 @@ void EngineTextures::fill(const ProbeTextures& traced, std::span<const std::uint
     fill_probes(traced, is_active);
     return;
   }
-  const Sources sources(probes_, traced.light, is_active);
+  const ProbeSamples samples(probes_, traced.light, is_active);
   const Grid grid = layout_grid(layout_, probes_);
   for (EngineTexture& texture : textures_) {
     switch (layout_.unit) {
       case GridUnit::probe:
         break;
       case GridUnit::brick:
-        fill_bricks(texture, grid, cells_of(layout_), sources, unity);
+        fill_bricks(texture, grid, cells_of(layout_), samples, unity);
         break;
       case GridUnit::cell:
         if (texture.desc.space == Space::pool) {
-          fill_bricks(texture, grid, cells_of(layout_), sources, unreal);
+          fill_bricks(texture, grid, cells_of(layout_), samples, unreal);
         } else {
           fill_indirection(texture, textures_.front().desc, grid);
         }
         break;
       case GridUnit::voxel:
-        fill_cubes(texture, grid, sources);
+        fill_cubes(texture, grid, samples);
         break;
       case GridUnit::texel:
-        fill_lightmap(texture, grid, sources);
+        fill_lightmap(texture, grid, samples);
         break;
     }
   }

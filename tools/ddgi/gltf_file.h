@@ -11,9 +11,9 @@ class Model;
 
 namespace gicodec::ddgi {
 
-/// Reads .gltf or .glb, told apart by their first bytes, with buffers and images; adds to `files`
-/// what it reads: files in its folder and below, and others only if they may lie `outside`. Throws
-/// tools::Error: Exit::io if the file cannot be opened, Exit::bad_input otherwise.
+/// Reads .gltf or .glb, distinguished by their first bytes, with buffers and images; adds to
+/// `files` what it reads: files in its folder and below, and others only if they may lie `outside`.
+/// Throws tools::Error: Exit::io if the file cannot be opened, Exit::bad_input otherwise.
 [[nodiscard]] tinygltf::Model read_gltf_file(const std::string& path,
                                              std::vector<std::string>& files, bool outside);
 

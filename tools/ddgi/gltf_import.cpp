@@ -280,7 +280,7 @@ class Importer {
     }
   }
 
-  /// Volume and camera, by rays where the file does not tell.
+  /// Volume and camera, by rays where the file does not say.
   void frame() {
     if (extras_.volume) {
       scene_.grid = extras_.volume->grid;

@@ -1,4 +1,4 @@
-// Which scene both ends mean: the server tells, clients that draw it compare.
+// Which scene both ends mean: the server sends it, clients that draw it compare.
 #pragma once
 
 #include "scene.h"
@@ -10,7 +10,7 @@
 
 namespace gicodec::ddgi {
 
-/// The label as it is told: UTF-8 without control characters, cut to what a Welcome takes.
+/// The label as it is sent: UTF-8 without control characters, cut to what a Welcome takes.
 [[nodiscard]] std::string scene_name(const std::string& label);
 
 /// A label and a hash of the triangles at rest, where they stand, and which of them move.

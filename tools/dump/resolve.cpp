@@ -50,8 +50,8 @@ class Resolver {
   }
   /// A hint replaces the attribute, so that files written later agree with their texels.
   void correct(Attribute attribute) {
-    const Attribute* told = find_attribute(info_.attributes, attribute.name);
-    if (told == nullptr || same_meaning(*told, attribute)) return;
+    const Attribute* stored = find_attribute(info_.attributes, attribute.name);
+    if (stored == nullptr || same_meaning(*stored, attribute)) return;
     set_attribute(info_.attributes, std::move(attribute));
   }
 
@@ -126,10 +126,10 @@ class Resolver {
     }
   }
   void require_agreement(const Attribute& attribute) {
-    const Attribute* told = find_attribute(info_.attributes, attribute.name);
-    if (told == nullptr || same_meaning(*told, attribute)) return;
+    const Attribute* stored = find_attribute(info_.attributes, attribute.name);
+    if (stored == nullptr || same_meaning(*stored, attribute)) return;
     fail(Exit::bad_input, "{}: says that {} is {}, but by {} it is {}; check --layout and --grid",
-         path_, attribute.name, told->value, hints_.agreed, attribute.value);
+         path_, attribute.name, stored->value, hints_.agreed, attribute.value);
   }
 
   static bool fits_a_format(const FoundImage& found) {
@@ -182,7 +182,8 @@ class Resolver {
     if (names == "GR" && all_float) return Format::R32G32_SFLOAT;
     if (names == "BGR" || names == "ABGR") return Format::A2R10G10B10_UNORM_PACK32;
     fail(Exit::bad_input,
-         "{}: no attribute {}, and its channels {} do not tell the format; use --vk-format, and "
+         "{}: no attribute {}, and its channels {} do not determine the format; use --vk-format, "
+         "and "
          "where the channels have other names than R, G, B, A, {}",
          path_, kFormat, list(found), mapping_for(found, names == "GR" ? "RG" : "RGB"));
   }

@@ -174,11 +174,11 @@ DumpInfo texture_info(const TextureHead& head, ImageKind kind, const Hints& hint
   resolve(info, found, hints, path);
   const Record& record = info.desc.record;
   const bool other = head.format && *head.format != record.format;
-  const bool told = hints.format || hints.any_format;
-  if (other && (!told || Record(*head.format).bytes != record.bytes)) {
+  const bool format_given = hints.format || hints.any_format;
+  if (other && (!format_given || Record(*head.format).bytes != record.bytes)) {
     fail(Exit::bad_input, "{}: is of format {}, not {}{}", path, find_format(*head.format)->name,
          find_format(record.format)->name,
-         told ? ", whose texels have another size; check --vk-format" : "");
+         format_given ? ", whose texels have another size; check --vk-format" : "");
   }
   drop_implied(info, kind);
   return info;

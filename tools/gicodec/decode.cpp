@@ -168,7 +168,7 @@ Exit decode(const DecodeOptions& options, const Cli& cli) {
     }
     if (selected && kind != kKindProbes && kind != kKindTextures) {
       remark(
-          fmt::format("volume {}: files do not tell that it is of kind {}; encode packs them as "
+          fmt::format("volume {}: files do not say that it is of kind {}; encode packs them as "
                       "textures",
                       volume_name(description, v), kind_text(kind)));
     }

@@ -86,12 +86,12 @@ Result<VolumeDesc> volume_of(const std::vector<NamedTexture>& textures) {
 }  // namespace
 
 std::string layout_question(const GeometryFlags& flags, const std::vector<Sequence>& sequences) {
-  const bool told = !flags.layout.empty() || !flags.grid.empty() || !flags.block.empty();
+  const bool layout_given = !flags.layout.empty() || !flags.grid.empty() || !flags.block.empty();
   std::set<std::string> names;
   for (const Sequence& sequence : sequences) {
     names.insert(sequence.name);
     // Other files describe themselves.
-    if (told || image_kind(sequence.frames.front().path) != ImageKind::dds) return "";
+    if (layout_given || image_kind(sequence.frames.front().path) != ImageKind::dds) return "";
   }
   for (const EngineLayout& layout : engine_layouts()) {
     const auto volume = layout.make({1, 1, 1});

@@ -110,11 +110,11 @@ Json texture_json(const ContainerReport& report, std::size_t place) {
   const StoredTexture& texture = report.input.textures()[place];
   const TextureEntry& entry = report.input.description().textures[place];
   const TextureReport& own = report.textures[place];
-  const bool told = std::isfinite(entry.largest_error);
+  const bool known = std::isfinite(entry.largest_error);
   Json json = {{"name", texture.name},
                {"volume", entry.volume},
                {"lossy", !texture.lossy.empty()},
-               {"largest_error", told ? Json(entry.largest_error) : Json(nullptr)},
+               {"largest_error", known ? Json(entry.largest_error) : Json(nullptr)},
                {"backends", Json::array()}};
   for (const std::uint8_t id : own.backends) json["backends"].push_back(backend_text(id));
   if (is_known(entry)) add_shape(entry.desc, json);

@@ -5,7 +5,7 @@
 namespace {
 
 constexpr const char* kFooter =
-    "gicodec COMMAND --help tells more.\n\n"
+    "See gicodec COMMAND --help.\n\n"
     "Exit codes:\n"
     "  0  success\n"
     "  1  verify or compare found a difference\n"

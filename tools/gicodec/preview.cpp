@@ -62,7 +62,8 @@ void check_picture_name(const std::string& path) {
 
 /// How informative a picture of a texture is: first whether its kind has a preview, then the bytes
 /// of its blocks.
-std::pair<bool, std::uint64_t> tells(const ContainerDescription& description, std::size_t texture) {
+std::pair<bool, std::uint64_t> preview_rank(const ContainerDescription& description,
+                                            std::size_t texture) {
   const VolumeEntry& volume = description.volumes[description.textures[texture].volume];
   std::size_t place = texture - volume.first_texture;
   for (const TextureGroup& group : volume.desc.groups) {
@@ -93,7 +94,7 @@ std::size_t chosen(const ContainerInput& input, const PreviewOptions& options) {
       continue;
     }
     if (best && description.textures[*best].volume != description.textures[i].volume) break;
-    if (!best || tells(description, i) > tells(description, *best)) best = i;
+    if (!best || preview_rank(description, i) > preview_rank(description, *best)) best = i;
   }
   if (best) return *best;
   if (!found) {

@@ -29,7 +29,7 @@ namespace {
 constexpr const char* kFooter =
     "Decodes every frame and compares texels, channels and attributes with the files. Exit code 0\n"
     "means that all of them are the same, 1 that something differs, is missing or is left over.\n"
-    "Probes that encode was told to leave out (--inactive) are skipped. Without files every "
+    "Probes that encode left out (--inactive) are skipped. Without files every "
     "packet\n"
     "is decoded and nothing is compared; so are packets of what dumps do not hold. Those of a "
     "volume\n"

@@ -1,8 +1,8 @@
 // A kind of light that the programs trace and draw.
 #pragma once
 
+#include "feed.h"
 #include "settings.h"
-#include "source.h"
 #include "volume_light.h"
 
 #include "ddgi/scene.h"
@@ -24,7 +24,7 @@ struct TraceRequest {
   std::function<bool()> cancelled = {};  ///< see ddgi::ThreadPool
 };
 
-/// A scene and its tracer, which a source keeps from frame to frame.
+/// A scene and its tracer, which a feed keeps from frame to frame.
 template <typename Server>
 struct Tracer {
   ddgi::Scene scene;
@@ -41,9 +41,9 @@ struct TracedKind {
   std::string_view summary;           ///< one line
   std::span<const Setting> settings;  ///< of tracing
   std::span<const Setting> drawing;   ///< of drawing
-  /// A source that traces live. Frames depend only on request and times, not on the number of
+  /// A feed that traces live. Frames depend only on request and times, not on the number of
   /// threads. Throws tools::Error.
-  Source (*trace)(TraceRequest request);
+  Feed (*trace)(TraceRequest request);
   /// Light of such a volume in a scene, which must outlive the light. Throws tools::Error of
   /// Exit::bad_input if they do not belong together.
   std::unique_ptr<VolumeLight> (*light)(const ddgi::RayScene& scene, const VolumeDesc& desc,

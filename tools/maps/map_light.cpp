@@ -41,7 +41,7 @@ MapLight::MapLight(const ddgi::RayScene& scene, const VolumeDesc& desc)
 
 void MapLight::check_hash(const kinds::HeldTexture& hash) const {
   const auto is_zero = [](std::byte b) { return b == std::byte{0}; };
-  if (!hash.has(0) || std::ranges::all_of(hash.texels, is_zero)) return;  // not told yet
+  if (!hash.has(0) || std::ranges::all_of(hash.texels, is_zero)) return;  // not received yet
   const std::vector<std::byte> own = hash_of(map_);
   if (std::memcmp(own.data(), hash.texels.data(), own.size()) != 0) {
     tools::fail(tools::Exit::bad_input,

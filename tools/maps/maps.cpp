@@ -34,27 +34,27 @@ constexpr std::array<std::string_view, 4> kFormats{"E5B9G9R9_UFLOAT_PACK32",
                                                    "B10G11R11_UFLOAT_PACK32", "R16G16B16A16_SFLOAT",
                                                    "A2B10G10R10_UNORM_PACK32"};
 
-kinds::Source trace(kinds::TraceRequest request) {
+kinds::Feed trace(kinds::TraceRequest request) {
   const MapOptions options = options_of(request.settings, request.seed);
   const auto scene = std::make_shared<ddgi::Scene>(std::move(request.scene));
   const auto server =
       std::make_shared<MapServer>(*scene, options, request.threads, std::move(request.cancelled));
-  kinds::Source source = kinds::live_source(
+  kinds::Feed feed = kinds::live_feed(
       "map", tools::take(irradiance_map_volume(server->desc()), "irradiance map"),
-      [scene, server, bases = options.by_bases, told = false](const kinds::SourceRequest& wanted,
-                                                              kinds::SourceFrame& frame) mutable {
+      [scene, server, bases = options.by_bases, reported = false](const kinds::FeedRequest& wanted,
+                                                                  kinds::FeedFrame& frame) mutable {
         server->update(wanted.time);
         frame.volumes[0].textures = server->textures();
-        if (told || server->clipped() == 0) return;
-        told = true;
+        if (reported || server->clipped() == 0) return;
+        reported = true;
         frame.remarks.push_back(
             fmt::format("10 bits hold no irradiance above 1, and that of {} {} is: it comes out "
                         "darker; E5B9G9R9_UFLOAT_PACK32 holds it",
                         server->clipped(), bases ? "bases" : "texels"));
       });
-  if (options.qp >= 0) source.volumes[0].quantisers = {-1, options.qp, -1};
+  if (options.qp >= 0) feed.volumes[0].quantisers = {-1, options.qp, -1};
   const Parameterisation& map = server->map();
-  source.remarks.push_back(fmt::format(
+  feed.remarks.push_back(fmt::format(
       "{} charts, {:.2f} texels per metre, {} of {}x{} texels on surfaces", map.rects().size(),
       map.density(), server->texels().size(), map.width(), map.height()));
   if (options.by_bases) {
@@ -63,9 +63,9 @@ kinds::Source trace(kinds::TraceRequest request) {
     if (!(options.spacing > 0) && bases > options.bases + options.bases / 10)
       remark +=
           fmt::format(", instead of {}: small and moving surfaces have their own", options.bases);
-    source.remarks.push_back(std::move(remark));
+    feed.remarks.push_back(std::move(remark));
   }
-  return source;
+  return feed;
 }
 
 std::unique_ptr<kinds::VolumeLight> light(const ddgi::RayScene& scene, const VolumeDesc& desc,

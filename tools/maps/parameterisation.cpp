@@ -35,7 +35,7 @@ namespace {
 using namespace ddgi;
 
 constexpr int kSteps = 18;        // of the search for the density
-constexpr double kFlat = 0.75;    // texels below which an extent is not told apart
+constexpr double kFlat = 0.75;    // texels below which an extent counts as none
 constexpr double kLimit = 65536;  // texels of a side, before anything is packed
 
 /// Texels along an extent, so that bilinear look-ups within it need no other.

@@ -33,7 +33,7 @@ class BatchPool {
 
   /// After the scene has got another state: batches of lights that changed, and those with a path
   /// through what a moved object left or entered, become stale; the oldest stale ones are shot.
-  /// Those of lights that only grew or faded are told the watts.
+  /// Those of lights that only grew or faded get the new watts.
   Update update(ddgi::ThreadPool& pool);
   [[nodiscard]] std::span<const Slot> slots() const noexcept { return slots_; }
   /// With the radius that the scene allows.

@@ -12,7 +12,7 @@ extern const kinds::TracedKind kTracedPhotons;
 [[nodiscard]] std::span<const kinds::Setting> photon_settings();
 
 /// TracedKind::trace and TracedKind::light.
-[[nodiscard]] kinds::Source trace(kinds::TraceRequest request);
+[[nodiscard]] kinds::Feed trace(kinds::TraceRequest request);
 [[nodiscard]] std::unique_ptr<kinds::VolumeLight> light(const ddgi::RayScene& scene,
                                                         const VolumeDesc& desc);
 

@@ -107,17 +107,17 @@ ProbeServer::ProbeServer(ddgi::Scene scene, const ProbeOptions& options, unsigne
   fine_geometry_ = VolumeGeometry{options.fine->grid, {0, 0, 0}, {s, s, s}, {0, 0, 0}};
 }
 
-std::vector<kinds::SourceVolume> ProbeServer::volumes() const {
+std::vector<kinds::FeedVolume> ProbeServer::volumes() const {
   const VolumeShape& shape = world_.shape();
   const auto shown = engine_ ? engine_textures(*engine_, options_.trace.forms.encoding)
                              : own_textures(world_.textures());
-  kinds::SourceVolume world;
+  kinds::FeedVolume world;
   world.name = engine_ ? std::string(options_.layout->name) : "world";
   world.desc = engine_ ? engine_->volume() : volume_of(shown);
   world.geometry.grid = shown.front().desc.grid;
   if (world.geometry.grid == shape.grid) world.geometry = ddgi::geometry_of(shape);
   for (const Shown& texture : shown) world.files.push_back(info_of(texture, shape));
-  std::vector<kinds::SourceVolume> all{std::move(world)};
+  std::vector<kinds::FeedVolume> all{std::move(world)};
   if (!fine_geometry_) return all;
   const ProbeTextures fine(fine_geometry_->grid, options_.trace.forms);
   all.push_back({"fine", *fine_geometry_, volume_of(own_textures(fine))});
@@ -157,9 +157,9 @@ void ProbeServer::remark(const ddgi::UpdateStatistics& update, std::vector<std::
   }
 }
 
-kinds::SourceFrame ProbeServer::next(const kinds::SourceRequest& request) {
+kinds::FeedFrame ProbeServer::next(const kinds::FeedRequest& request) {
   const auto start = std::chrono::steady_clock::now();
-  kinds::SourceFrame frame;
+  kinds::FeedFrame frame;
   frame.time = request.time;
   if (!begun_ && options_.trace.mode == ddgi::TraceMode::noisy) {
     for (std::uint32_t i = 0; i < options_.warmup; ++i) world_.update(request.time);
@@ -171,7 +171,7 @@ kinds::SourceFrame ProbeServer::next(const kinds::SourceRequest& request) {
   if (engine_) engine_->fill(world_.textures(), world_.active_probes());
   const auto shown = engine_ ? engine_textures(*engine_, options_.trace.forms.encoding)
                              : own_textures(world_.textures());
-  kinds::SourceFrame::Volume& world = frame.volumes.emplace_back();
+  kinds::FeedFrame::Volume& world = frame.volumes.emplace_back();
   // Blocks of layouts without probes are all there.
   if (!engine_ || engine_->volume().kind == kKindProbes)
     world.active = mask_of(world_.active_probes(), world_.shape().probes());
@@ -187,7 +187,7 @@ kinds::SourceFrame ProbeServer::next(const kinds::SourceRequest& request) {
   return frame;
 }
 
-kinds::SourceFrame::Volume ProbeServer::trace_fine(const Position& eye, double time) {
+kinds::FeedFrame::Volume ProbeServer::trace_fine(const Position& eye, double time) {
   VolumeGeometry& g = *fine_geometry_;
   if (!fine_ || off_middle(g, eye)) {
     g.scroll = scroll_to(g, eye);
@@ -197,7 +197,7 @@ kinds::SourceFrame::Volume ProbeServer::trace_fine(const Position& eye, double t
   }
   fine_->update(time);
   const auto places = blocks_by_cell(g);
-  kinds::SourceFrame::Volume volume{g.scroll, BlockMask(places.size()), {}};
+  kinds::FeedFrame::Volume volume{g.scroll, BlockMask(places.size()), {}};
   for (const std::uint32_t probe : fine_->active_probes()) volume.active[places[probe]] = 1;
   for (const Shown& from : own_textures(fine_->textures())) {
     auto& to = volume.textures.emplace_back(from.texels.size());

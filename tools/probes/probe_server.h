@@ -3,7 +3,7 @@
 
 #include "ddgi/ddgi_volume.h"
 #include "ddgi/engine_textures.h"
-#include "kinds/source.h"
+#include "kinds/feed.h"
 
 #include <functional>
 #include <memory>
@@ -31,13 +31,13 @@ class ProbeServer {
   ProbeServer(ddgi::Scene scene, const ProbeOptions& options, unsigned threads,
               std::function<bool()> cancelled);
 
-  [[nodiscard]] std::vector<kinds::SourceVolume> volumes() const;
+  [[nodiscard]] std::vector<kinds::FeedVolume> volumes() const;
   /// How many probes there are, and why they are black if they are.
   [[nodiscard]] std::vector<std::string> remarks() const;
-  [[nodiscard]] kinds::SourceFrame next(const kinds::SourceRequest& request);
+  [[nodiscard]] kinds::FeedFrame next(const kinds::FeedRequest& request);
 
  private:
-  kinds::SourceFrame::Volume trace_fine(const Position& eye, double time);
+  kinds::FeedFrame::Volume trace_fine(const Position& eye, double time);
   void remark(const ddgi::UpdateStatistics& update, std::vector<std::string>& remarks);
 
   ProbeOptions options_;

@@ -128,8 +128,8 @@ ddgi::TextureForms forms_of(const kinds::Settings& settings, const EngineLayout*
     (color ? forms.color_core : forms.visibility_core) = core_of(text);
   });
   const std::string_view encoding = kEncodings[settings.choice("encoding", kEncodings)];
-  if (const auto told = ddgi::encoding_from_string(encoding)) {
-    forms.encoding = *told;
+  if (const auto given = ddgi::encoding_from_string(encoding)) {
+    forms.encoding = *given;
   } else if (layout == nullptr) {
     forms.encoding = ddgi::usual_encoding(forms.color);
   }
@@ -150,14 +150,14 @@ std::optional<FineVolume> fine_of(const kinds::Settings& settings) {
   return FineVolume{*grid, spacing};
 }
 
-kinds::Source trace(kinds::TraceRequest request) {
+kinds::Feed trace(kinds::TraceRequest request) {
   const auto server = std::make_shared<ProbeServer>(std::move(request.scene),
                                                     options_of(request.settings, request.seed),
                                                     request.threads, std::move(request.cancelled));
   return {server->volumes(),
           {},
           false,
-          [server](const kinds::SourceRequest& wanted) { return server->next(wanted); },
+          [server](const kinds::FeedRequest& wanted) { return server->next(wanted); },
           server->remarks()};
 }
 

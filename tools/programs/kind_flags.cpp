@@ -103,14 +103,14 @@ Settings settings_of(const TracedKind& kind, const KindFlags& flags) {
   return {kind.name, kind.settings, given, "--"};
 }
 
-Source trace_kind(const KindFlags& flags, ddgi::Scene scene, const std::string& label,
-                  std::uint32_t seed, unsigned threads) {
+Feed trace_kind(const KindFlags& flags, ddgi::Scene scene, const std::string& label,
+                std::uint32_t seed, unsigned threads) {
   const TracedKind& kind = traced_kind(flags);
   const SceneId id = ddgi::scene_id(label, scene);
-  Source source =
+  Feed feed =
       kind.trace({std::move(scene), settings_of(kind, flags), seed, threads, tools::interrupted});
-  source.scene = id;
-  return source;
+  feed.scene = id;
+  return feed;
 }
 
 }  // namespace gicodec::kinds

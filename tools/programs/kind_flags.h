@@ -37,9 +37,9 @@ void refuse_flags_of_culled(const tools::Command& app, const KindFlags& flags,
 [[nodiscard]] const TracedKind& traced_kind(const KindFlags& flags);
 /// Throws tools::Error of Exit::usage for settings that the kind does not have, or has as flags.
 [[nodiscard]] Settings settings_of(const TracedKind& kind, const KindFlags& flags);
-/// A source that traces the kind in a scene named `label`. Throws tools::Error, and ddgi::Cancelled
+/// A feed that traces the kind in a scene named `label`. Throws tools::Error, and ddgi::Cancelled
 /// when the program is interrupted.
-[[nodiscard]] Source trace_kind(const KindFlags& flags, ddgi::Scene scene, const std::string& label,
-                                std::uint32_t seed, unsigned threads);
+[[nodiscard]] Feed trace_kind(const KindFlags& flags, ddgi::Scene scene, const std::string& label,
+                              std::uint32_t seed, unsigned threads);
 
 }  // namespace gicodec::kinds

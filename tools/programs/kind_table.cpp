@@ -37,7 +37,7 @@ std::unique_ptr<VolumeLight> make_light(const TracedKind& kind, const ddgi::RayS
   return kind.light(scene, desc, drawing);
 }
 
-bool is_culled(const SourceVolume& volume) {
+bool is_culled(const FeedVolume& volume) {
   const Kind* const kind = find_kind(volume.desc.kind);
   const TracedKind* const traced = kind == nullptr ? nullptr : find_traced_kind(kind->name);
   return traced != nullptr && traced->culled;

@@ -26,7 +26,7 @@ struct DrawingFlags {
 
 [[nodiscard]] std::span<const TracedKind> traced_kinds();
 /// True if viewers need only some of the volume's blocks.
-[[nodiscard]] bool is_culled(const SourceVolume& volume);
+[[nodiscard]] bool is_culled(const FeedVolume& volume);
 /// nullptr for an unknown name.
 [[nodiscard]] const TracedKind* find_traced_kind(std::string_view name);
 

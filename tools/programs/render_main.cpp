@@ -96,11 +96,11 @@ class Client {
   /// Places the scene at the time of `shown`, unless that is nullptr.
   void place(const StoredVolume* shown) {
     const Options& o = options_;
-    const auto told = shown == nullptr ? std::nullopt : shown->facts_at(o.frame).time;
-    const double time = o.time.value_or(told.value_or(static_cast<double>(o.frame) / 10));
-    if (shown != nullptr && !told && !o.time && !o.quiet) {
+    const auto stored_time = shown == nullptr ? std::nullopt : shown->facts_at(o.frame).time;
+    const double time = o.time.value_or(stored_time.value_or(static_cast<double>(o.frame) / 10));
+    if (shown != nullptr && !stored_time && !o.time && !o.quiet) {
       tools::print(stderr, "gi-render: {}: does not say when; drawn as at {} s; --time sets it\n",
-                   shown->source(), time);
+                   shown->path(), time);
     }
     rays_.set_state(scene_.state_at(time));
     camera_ = scene_.camera_at(time);
@@ -166,7 +166,7 @@ class Client {
     const Grid grid = shown.desc().groups.front().textures.front().desc.grid;
     SceneFlags flags = options_.scene;
     if (!flags.grid.empty() && tools::grid_from_string(flags.grid) != grid) {
-      fail(Exit::bad_input, "{}: its grid is {}, not {}; leave out --grid", shown.source(),
+      fail(Exit::bad_input, "{}: its grid is {}, not {}; leave out --grid", shown.path(),
            tools::to_string(grid), flags.grid);
     }
     flags.grid = tools::to_string(grid);
@@ -183,7 +183,7 @@ class Client {
         outside(shape.origin.x, last.x, box.lo.x, box.hi.x) ||
         outside(shape.origin.y, last.y, box.lo.y, box.hi.y) ||
         outside(shape.origin.z, last.z, box.lo.z, box.hi.z)) {
-      fail(Exit::bad_input, "{}: its volume lies outside of {}; {}", shown.source(), scene_.name,
+      fail(Exit::bad_input, "{}: its volume lies outside of {}; {}", shown.path(), scene_.name,
            flags.bounds.empty() ? "was it traced in another scene?" : "leave out --bounds");
     }
     shown.place(geometry_of(shape));
@@ -223,29 +223,29 @@ void check_usage(const Options& o) {
 /// The scene of the flags, else that of `shown`. Fails if these differ.
 Scene find_scene(const SceneFlags& flags, const StoredVolume* shown, const FrameFacts& facts) {
   SceneFlags used = flags;
-  const bool told = !flags.scene.empty() || !flags.gltf.empty();
-  if (facts.scene && !(told && *facts.scene == scene_label(flags))) {
+  const bool scene_given = !flags.scene.empty() || !flags.gltf.empty();
+  if (facts.scene && !(scene_given && *facts.scene == scene_label(flags))) {
     const bool built_in = is_built_in(*facts.scene);
-    if (told)
-      fail(Exit::bad_input, "{}: was traced in {}, not in {}; {}", shown->source(), *facts.scene,
+    if (scene_given)
+      fail(Exit::bad_input, "{}: was traced in {}, not in {}; {}", shown->path(), *facts.scene,
            scene_label(flags),
            built_in ? "leave out --scene and --gltf" : "name that file by --gltf FILE");
     if (!built_in)
       fail(Exit::usage,
            "{}: was traced in {}, which is no built-in scene; name that file by "
            "--gltf FILE",
-           shown->source(), *facts.scene);
+           shown->path(), *facts.scene);
     used.scene = *facts.scene;
-  } else if (shown != nullptr && !facts.scene && !told) {
+  } else if (shown != nullptr && !facts.scene && !scene_given) {
     fail(Exit::usage,
          "{}: does not say in which scene it was traced; --scene NAME or --gltf FILE "
          "is needed",
-         shown->source());
+         shown->path());
   }
   Scene scene = load_scene(used);
   const std::uint64_t triangles = shown == nullptr ? 0 : shown->triangles();
   if (triangles != 0 && triangles != scene_id(scene_label(used), scene).geometry)
-    fail(Exit::bad_input, "{}: was traced in a scene of other triangles than {}", shown->source(),
+    fail(Exit::bad_input, "{}: was traced in a scene of other triangles than {}", shown->path(),
          scene.name);
   return scene;
 }

@@ -1,6 +1,6 @@
 #include "stored_volume.h"
 
-#include "source_container.h"
+#include "feed_container.h"
 
 #include "common/program.h"
 #include "common/volume_words.h"
@@ -55,12 +55,12 @@ void FrameFacts::read(const tools::Attributes& attributes) {
 StoredVolume::StoredVolume(const std::string& path, bool allow_incomplete,
                            const tools::DecoderFlags& decoding)
     : input_(std::in_place, path, decoding), allow_incomplete_(allow_incomplete) {
-  source_ = input_->path();
+  path_ = input_->path();
   missing_ = require_complete(*input_, allow_incomplete);
   const auto& volumes = input_->description().volumes;
   const auto found = std::ranges::find_if(volumes, traced);
   if (found == volumes.end()) {
-    fail(Exit::bad_input, "{}: nothing can be drawn: {}", source_,
+    fail(Exit::bad_input, "{}: nothing can be drawn: {}", path_,
          volumes.empty() ? "it holds no volume" : why_not(input_->description(), 0));
   }
   kind_ = traced(*found);
@@ -75,7 +75,7 @@ StoredVolume::StoredVolume(const std::string& path, bool allow_incomplete,
 }
 
 StoredVolume::StoredVolume(const std::string& folder, std::uint64_t frame)
-    : source_(folder), kind_(find_traced_kind("probes")) {
+    : path_(folder), kind_(find_traced_kind("probes")) {
   std::vector<NamedTexture> named;
   std::string others;
   for (const auto& sequence : tools::group_sequences({folder}, true)) {
@@ -137,7 +137,7 @@ void StoredVolume::show(std::uint64_t frame, VolumeLight& light) {
   while (!input_->last_frame() || *input_->last_frame() < frame) {
     tools::check_interrupt();
     if (!input_->next_frame() || input_->frame() > frame) {
-      fail(Exit::bad_input, "{}: has no frame {}; {}", source_, frame, input_->frames_there());
+      fail(Exit::bad_input, "{}: has no frame {}; {}", path_, frame, input_->frames_there());
     }
     follow();
     if (kind_->remembers || input_->frame() == frame) update(input_->frame(), light);
@@ -174,7 +174,7 @@ void StoredVolume::update(std::uint64_t frame, VolumeLight& light) const {
   try {
     light.update({desc_, geometry, held}, facts_at(frame).time.value_or(FrameTimes{}.at(frame)));
   } catch (const tools::Error& error) {
-    throw tools::Error(error.code(), source_ + ": " + error.what());
+    throw tools::Error(error.code(), path_ + ": " + error.what());
   }
 }
 

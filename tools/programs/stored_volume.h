@@ -31,7 +31,7 @@ class StoredVolume {
   /// Opens the dumps of a folder: irradiance and visibility of one frame of probes.
   StoredVolume(const std::string& folder, std::uint64_t frame);
 
-  [[nodiscard]] const std::string& source() const noexcept { return source_; }  ///< for messages
+  [[nodiscard]] const std::string& path() const noexcept { return path_; }  ///< for messages
   [[nodiscard]] const TracedKind& kind() const noexcept { return *kind_; }
   [[nodiscard]] const VolumeDesc& desc() const noexcept { return desc_; }
   /// A hash of the scene's triangles; 0 if unknown.
@@ -51,7 +51,7 @@ class StoredVolume {
   void follow();
   void update(std::uint64_t frame, VolumeLight& light) const;
 
-  std::string source_, missing_;
+  std::string path_, missing_;
   std::optional<tools::ContainerInput> input_;
   bool allow_incomplete_ = false;
   std::vector<tools::DumpInfo> files_;  ///< headers of dumps

@@ -1,6 +1,6 @@
 // gi-trace: traces the light of a scene, of any kind, and writes it as a container.
+#include "feed_container.h"
 #include "kind_flags.h"
-#include "source_container.h"
 
 #include "common/program.h"
 #include "ddgi/gltf.h"
@@ -94,7 +94,7 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  void step(const SourceFrame& frame) {
+  void step(const FeedFrame& frame) {
     ++done_;
     rays_ += static_cast<double>(frame.rays);
     seconds_ += frame.seconds;
@@ -136,10 +136,10 @@ void print_remarks(const std::vector<std::string>& remarks, bool quiet) {
   for (const std::string& remark : remarks) tools::print(stderr, "gi-trace: {}\n", remark);
 }
 
-void print_sums(const Options& o, const SourceContainer& container, const Progress& progress) {
+void print_sums(const Options& o, const FeedContainer& container, const Progress& progress) {
   std::uint64_t all = 0;
   std::string textures;
-  for (const SourceContainer::Sum& sum : container.sums()) {
+  for (const FeedContainer::Sum& sum : container.sums()) {
     all += sum.bytes;
     textures += fmt::format("{}{} {:.1f} kB", textures.empty() ? "" : ", ", sum.texture,
                             static_cast<double>(sum.bytes) * 1e-3);
@@ -151,20 +151,18 @@ void print_sums(const Options& o, const SourceContainer& container, const Progre
 }
 
 void write_trace(const Options& o, Scene scene) {
-  const kinds::Source source = unless_cancelled([&] {
+  const kinds::Feed feed = unless_cancelled([&] {
     return trace_kind(o.kind, std::move(scene), scene_label(o.scene), o.seed, o.threads);
   });
-  print_remarks(source.remarks, o.quiet);
+  print_remarks(feed.remarks, o.quiet);
   const FrameTimes times{o.start, o.fps};
-  SourceContainer container(o.output, source, times, "native");
+  FeedContainer container(o.output, feed, times, "native");
   std::uint32_t frame = 0;
   try {
     Progress progress(o);
     for (; frame < o.frames; ++frame) {
       tools::check_interrupt();
-      const SourceFrame contents = unless_cancelled([&] {
-        return source.next({times.at(frame), {}});
-      });
+      const FeedFrame contents = unless_cancelled([&] { return feed.next({times.at(frame), {}}); });
       print_remarks(contents.remarks, o.quiet);
       container.add(frame, contents);
       progress.step(contents);

@@ -20,19 +20,19 @@ Access::Access(std::string token, std::string users_file)
 Users Access::read() const { return file_.empty() ? Users() : read_users(file_); }
 
 std::optional<Reason> Access::judge(ConnectionId connection, std::string_view token, double now) {
-  Connection& who = connections_[connection];
+  Connection& peer = connections_[connection];
   if (!asks()) return std::nullopt;
-  if (!guesses_.has(who.host, now)) {
+  if (!guesses_.has(peer.host, now)) {
     ++unheard_;
     return Reason::token;
   }
   if (!token_.empty() && same_secret(token, token_)) return std::nullopt;
-  who.user = file_.empty() ? std::string() : user_of(users_, token);
-  if (!who.user.empty()) {
-    who.as = users_.find(who.user)->second;
+  peer.user = file_.empty() ? std::string() : user_of(users_, token);
+  if (!peer.user.empty()) {
+    peer.as = users_.find(peer.user)->second;
     return std::nullopt;
   }
-  guesses_.take(who.host, now);
+  guesses_.take(peer.host, now);
   return Reason::token;
 }
 

@@ -16,13 +16,13 @@ namespace gicodec::streaming {
 /// ISO 8601 in UTC: "2026-11-21T20:52:11.123Z".
 [[nodiscard]] inline std::string utc_time() {
   using namespace std::chrono;
-  const auto since = duration_cast<milliseconds>(system_clock::now().time_since_epoch()).count();
-  const std::time_t seconds = since / 1000;
+  const auto ticks = duration_cast<milliseconds>(system_clock::now().time_since_epoch()).count();
+  const std::time_t seconds = ticks / 1000;
   std::tm parts{};
   gmtime_r(&seconds, &parts);
   char text[32];
   std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%S", &parts);
-  return fmt::format("{}.{:03}Z", text, since % 1000);
+  return fmt::format("{}.{:03}Z", text, ticks % 1000);
 }
 
 }  // namespace gicodec::streaming

@@ -93,7 +93,7 @@ Control::~Control() {
 
 bool Control::serve(Asker& asker,
                     const std::function<std::string(const std::string& command)>& answer) {
-  if (now() - asker.since > kPatience) return false;
+  if (now() - asker.accepted > kPatience) return false;
   while (!asker.answered) {
     char bytes[kMaxCommand];
     const ssize_t got = recv(asker.descriptor, bytes, sizeof bytes, 0);

@@ -26,7 +26,7 @@ class Control {
  private:
   struct Asker {
     int descriptor;
-    double since;
+    double accepted;  ///< when
     std::string command, answer;
     bool answered = false;
   };

@@ -249,7 +249,7 @@ int main(int argc, char** argv) {
   app.add_option("--seconds", o.seconds, "Ends after so long; 0: when interrupted")
       ->allow(tools::in_range(0.0, 1e9));
   app.add_flag("-q,--quiet", o.quiet,
-               "Nothing but errors; else packets passed and dropped are told at the end");
+               "Nothing but errors; else packets passed and dropped are printed at the end");
   app.footer(
       fmt::format("{}\n\nExamples:\n"
                   "  gi-relay --listen 127.0.0.1:4700 --to 127.0.0.1:4600 --loss 5 --delay "

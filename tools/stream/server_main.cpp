@@ -8,11 +8,11 @@
 #include "dump/dump.h"
 #include "dump/error.h"
 #include "dump/text.h"
+#include "feed_fit.h"
 #include "loading.h"
 #include "log.h"
 #include "server_flags.h"
 #include "service.h"
-#include "source_fit.h"
 #include "token.h"
 
 #include <fmt/core.h>
@@ -29,11 +29,11 @@ using namespace gicodec::streaming;
 using tools::Exit;
 using tools::fail;
 
-kinds::Source make_source(const ServerFlags& o) {
+kinds::Feed make_feed(const ServerFlags& o) {
   if (!o.play.empty()) {
     if (!o.kind.own.at("fine").empty()) fail(Exit::usage, "--fine is for scenes that are traced");
     if (!traced_kind(o.kind).flags) fail(Exit::usage, "--kind is for scenes that are traced");
-    return play_source(
+    return play_feed(
         o.play, {o.loop, o.service.rate, o.allow_incomplete, o.server.settings.isa, o.max_memory});
   }
   ddgi::Scene scene = kinds::load_scene(o.scene);
@@ -43,27 +43,27 @@ kinds::Source make_source(const ServerFlags& o) {
 
 /// The scene for culling and for clients' SceneId: that of the flags, or the built-in one that a
 /// recording names.
-std::optional<ddgi::Scene> scene_of(const ServerFlags& o, kinds::Source& source) {
+std::optional<ddgi::Scene> scene_of(const ServerFlags& o, kinds::Feed& feed) {
   kinds::SceneFlags flags = o.scene;
   if (flags.scene.empty() && flags.gltf.empty()) {
-    auto recorded = ddgi::make_scene(source.scene.name);
-    if (recorded) source.scene = ddgi::scene_id(source.scene.name, *recorded);
+    auto recorded = ddgi::make_scene(feed.scene.name);
+    if (recorded) feed.scene = ddgi::scene_id(feed.scene.name, *recorded);
     return recorded;
   }
   const std::string label = ddgi::scene_name(kinds::scene_label(flags));
-  if (!source.scene.name.empty() && source.scene.name != label)
-    fail(Exit::bad_input, "{}: was traced in {}, not in {}", o.play, source.scene.name, label);
+  if (!feed.scene.name.empty() && feed.scene.name != label)
+    fail(Exit::bad_input, "{}: was traced in {}, not in {}", o.play, feed.scene.name, label);
   ddgi::Scene scene = kinds::load_scene(flags);
-  if (source.scene.geometry == 0) source.scene = ddgi::scene_id(label, scene);
+  if (feed.scene.geometry == 0) feed.scene = ddgi::scene_id(label, scene);
   return scene;
 }
 
-/// Limits the memory of a played source, which may claim large textures in a few bytes.
-void check_memory(const ServerFlags& o, const kinds::Source& source) {
+/// Limits the memory of a played feed, which may claim large textures in a few bytes.
+void check_memory(const ServerFlags& o, const kinds::Feed& feed) {
   // Textures as read, shown and published, and the server's data per block.
   constexpr std::uint64_t kCopies = 3, kBlock = 256;
   std::uint64_t bytes = 0;
-  for (const SourceVolume& volume : source.volumes) {
+  for (const FeedVolume& volume : feed.volumes) {
     for (const NamedTexture& texture : volume.textures()) {
       bytes += kCopies * texture_bytes(texture.desc) + kBlock * block_count(texture.desc);
     }
@@ -77,15 +77,15 @@ void check_memory(const ServerFlags& o, const kinds::Source& source) {
 
 /// Everything slow to load before there is a server.
 struct Loaded {
-  kinds::Source source;
+  kinds::Feed feed;
   std::unique_ptr<Views> views;
 };
 
 Loaded load(const ServerFlags& o) {
-  Loaded loaded{make_source(o), nullptr};
-  const bool culls = std::ranges::any_of(loaded.source.volumes, kinds::is_culled) && !o.no_culling;
-  if (!culls && !loaded.source.played) return loaded;
-  auto scene = scene_of(o, loaded.source);
+  Loaded loaded{make_feed(o), nullptr};
+  const bool culls = std::ranges::any_of(loaded.feed.volumes, kinds::is_culled) && !o.no_culling;
+  if (!culls && !loaded.feed.played) return loaded;
+  auto scene = scene_of(o, loaded.feed);
   if (!scene || !culls) return loaded;
   loaded.views = std::make_unique<Views>(*std::move(scene), o.view_samples, o.view_margin);
   return loaded;
@@ -118,12 +118,11 @@ void use_quantiser(const ServerFlags& o, int quantiser, StreamedTexture& texture
 }
 
 /// The options of all textures; colour and visibility of probes have their own.
-std::vector<std::vector<StreamedTexture>> streamed(const ServerFlags& o,
-                                                   const kinds::Source& source,
+std::vector<std::vector<StreamedTexture>> streamed(const ServerFlags& o, const kinds::Feed& feed,
                                                    LossyBackends& lossy) {
   std::vector<std::vector<StreamedTexture>> all;
   std::vector<std::string> names;
-  for (const SourceVolume& volume : source.volumes) {
+  for (const FeedVolume& volume : feed.volumes) {
     auto& textures = all.emplace_back();
     std::size_t place = 0;
     for (const TextureGroup& group : volume.desc.groups) {
@@ -159,7 +158,7 @@ std::vector<std::vector<StreamedTexture>> streamed(const ServerFlags& o,
   const auto is_exact = [](const StreamedTexture& texture) { return texture.max_error == 0; };
   const bool any_off = std::ranges::any_of(
       all, [&](const auto& textures) { return !std::ranges::all_of(textures, is_exact); });
-  if (!o.max_error.empty() && !any_off && !std::ranges::any_of(source.volumes, is_probes))
+  if (!o.max_error.empty() && !any_off && !std::ranges::any_of(feed.volumes, is_probes))
     fail(Exit::usage, "--max-error: every bit of what is streamed counts; leave it out");
   return all;
 }
@@ -270,7 +269,7 @@ Exit run(ServerFlags& o) {
          kMaxGridSide, o.region);
   o.server.region = *region;
   o.server.limits.max_clients = o.max_clients;
-  // More than the server's limit, so that it can tell further clients that it is full.
+  // More than the server's limit, so that it can answer further clients that it is full.
   o.service.net.links = std::min<std::size_t>(4095, o.server.limits.max_connections + 16);
   o.service.net.links_per_address = o.per_address;
   o.service.net.max_received = static_cast<std::size_t>(o.server.limits.max_message_bytes) + 1;
@@ -285,17 +284,17 @@ Exit run(ServerFlags& o) {
     summarise_nothing(o);
     end_now(Exit::ok);
   }
-  auto& [source, views] = *loaded;
-  if (!o.play.empty()) check_memory(o, source);
-  o.server.scene = source.scene;
+  auto& [feed, views] = *loaded;
+  if (!o.play.empty()) check_memory(o, feed);
+  o.server.scene = feed.scene;
   LossyBackends lossy;
-  const auto textures = streamed(o, source, lossy);
-  for (const SourceVolume& volume : source.volumes) check_backend(o, volume);
+  const auto textures = streamed(o, feed, lossy);
+  for (const FeedVolume& volume : feed.volumes) check_backend(o, volume);
   // Per update an Acknowledge and a Viewpoint, and some more.
   o.server.limits.messages_per_second =
       o.max_messages.value_or(std::max(200.0, 100 + 2 * o.service.rate));
   auto server = tools::take(Server::create(o.server), "backend " + o.backend);
-  Service service(o.service, std::move(server), access, source, std::move(views), textures);
+  Service service(o.service, std::move(server), access, feed, std::move(views), textures);
   service.run();
   return Exit::ok;
 }
@@ -311,7 +310,7 @@ int main(int argc, char** argv) {
   options.server.threads = std::max(1U, std::thread::hardware_concurrency());
   add_server_flags(app, options);
   app.footer(fmt::format(
-      "Over ENet nothing is encrypted and clients cannot tell who the server is: across networks\n"
+      "Over ENet nothing is encrypted and clients cannot verify the server: across networks\n"
       "that are not trusted, use --listen-web.\n\n{}{}\n\n"
       "Examples:\n"
       "  gi-server --scene villa --grid 8x4x8 --listen 127.0.0.1:4600\n"

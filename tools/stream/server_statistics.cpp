@@ -80,12 +80,12 @@ void Durations::add(double seconds) {
 
 double Durations::mean_ms() const { return count > 0 ? sum / static_cast<double>(count) * 1e3 : 0; }
 
-ServerStatistics::ServerStatistics(const Output& output, const std::vector<SourceVolume>& volumes)
+ServerStatistics::ServerStatistics(const Output& output, const std::vector<FeedVolume>& volumes)
     : output_(output),
       lines_(open(output.file, is_statistics)),
       log_(open(output.log, is_log)),
       terminal_(!output.quiet && isatty(STDERR_FILENO) != 0) {
-  for (const SourceVolume& volume : volumes) {
+  for (const FeedVolume& volume : volumes) {
     first_stream_.push_back(streams_.size());
     for (const NamedTexture& texture : volume.textures()) {
       streams_.push_back(volume.name + "." + texture.name);

@@ -2,7 +2,7 @@
 // update.
 #pragma once
 
-#include "source.h"
+#include "play_feed.h"
 
 #include <gicodec/server.h>
 
@@ -33,7 +33,7 @@ class ServerStatistics {
     std::string log;     ///< CSV of updates
     bool quiet = false;  ///< no table, no status line
   };
-  ServerStatistics(const Output& output, const std::vector<SourceVolume>& volumes);
+  ServerStatistics(const Output& output, const std::vector<FeedVolume>& volumes);
   ~ServerStatistics();
   ServerStatistics(const ServerStatistics&) = delete;
   ServerStatistics& operator=(const ServerStatistics&) = delete;

@@ -46,24 +46,24 @@ void Service::log_text(const std::string& text) {
 }
 
 Service::Service(const ServiceOptions& options, Server server, std::shared_ptr<Access> access,
-                 const Source& source, std::unique_ptr<Views> views,
+                 const Feed& feed, std::unique_ptr<Views> views,
                  const std::vector<std::vector<StreamedTexture>>& textures)
     : options_(options),
       server_(std::move(server)),
       access_(std::move(access)),
-      volumes_(source.volumes),
-      remarks_(source.remarks),
-      played_(source.played),
+      volumes_(feed.volumes),
+      remarks_(feed.remarks),
+      played_(feed.played),
       views_(std::move(views)),
       net_(options.listen, options.web, options.net),
       control_(options.control.empty() ? std::optional<Control>()
                                        : std::optional<Control>(std::in_place, options.control)),
-      statistics_(options.statistics, source.volumes),
+      statistics_(options.statistics, feed.volumes),
       log_limit_(kLogBurst, kLogRate),
-      tracer_(source.next),
+      tracer_(feed.next),
       updater_([this](double now) { return server_.update(now, time_); }) {
   for (std::size_t v = 0; v < volumes_.size(); ++v) {
-    const SourceVolume& volume = volumes_[v];
+    const FeedVolume& volume = volumes_[v];
     const auto id = server_.add_volume(volume.name, volume.desc, volume.geometry, textures[v]);
     tools::check(id.status(), "volume " + volume.name);
     const bool voxels = volume.desc.kind == kKindVoxels;
@@ -96,7 +96,7 @@ void Service::begin() {
     ports.erase(ports.begin());
   }
   std::string what;
-  for (const SourceVolume& volume : volumes_) {
+  for (const FeedVolume& volume : volumes_) {
     what += what.empty() ? "" : ", ";
     if (is_probes(volume)) {
       what += fmt::format("{} probes", tools::to_string(volume.geometry.grid));

@@ -6,8 +6,8 @@
 #include "control.h"
 #include "log.h"
 #include "net.h"
+#include "play_feed.h"
 #include "server_statistics.h"
-#include "source.h"
 #include "views.h"
 
 #include <gicodec/server.h>
@@ -38,10 +38,10 @@ struct ServiceOptions {
 
 class Service {
  public:
-  /// Adds the source's volumes to the server. `access`: that of the server. Without `views` clients
+  /// Adds the feed's volumes to the server. `access`: that of the server. Without `views` clients
   /// see everything, unless they subscribe.
   Service(const ServiceOptions& options, Server server, std::shared_ptr<Access> access,
-          const Source& source, std::unique_ptr<Views> views,
+          const Feed& feed, std::unique_ptr<Views> views,
           const std::vector<std::vector<StreamedTexture>>& textures);
 
   /// Returns once all updates are made and acknowledged, or after an interrupt.
@@ -75,7 +75,7 @@ class Service {
   void show();
   std::size_t send(ConnectionId id);
   void send_all();
-  void publish(const SourceFrame& frame);
+  void publish(const FeedFrame& frame);
   void tell_pace();
   void take_background();
   void request_frame();
@@ -97,8 +97,8 @@ class Service {
   ServiceOptions options_;
   Server server_;
   std::shared_ptr<Access> access_;
-  std::vector<SourceVolume> volumes_;
-  std::vector<std::string> remarks_;  ///< of the source
+  std::vector<FeedVolume> volumes_;
+  std::vector<std::string> remarks_;  ///< of the feed
   bool played_ = false;
   std::unique_ptr<Views> views_;
   std::vector<ViewedVolume> viewed_;  ///< of every volume
@@ -120,7 +120,7 @@ class Service {
   unsigned slow_frames_ = 0;  ///< consecutive ones that took longer than an update
   std::size_t active_ = 0;
 
-  Background<SourceRequest, SourceFrame> tracer_;
+  Background<FeedRequest, FeedFrame> tracer_;
   Background<double, Status> updater_;  ///< uses the server while it works
   std::optional<Background<ViewRequest, ViewResult>> viewer_;
 };

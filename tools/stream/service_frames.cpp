@@ -1,4 +1,4 @@
-// The frames of a service's source, and which blocks clients see.
+// The frames of a service's feed, and which blocks clients see.
 #include "service.h"
 
 #include "dump/dump.h"
@@ -9,10 +9,10 @@
 
 namespace gicodec::streaming {
 
-void Service::publish(const SourceFrame& frame) {
+void Service::publish(const FeedFrame& frame) {
   for (const std::string& remark : frame.remarks) log("{}", remark);
   for (std::uint16_t v = 0; v < frame.volumes.size(); ++v) {
-    const SourceFrame::Volume& volume = frame.volumes[v];
+    const FeedFrame::Volume& volume = frame.volumes[v];
     tools::check(server_.scroll(v, volume.scroll), "scrolling " + volumes_[v].name);
     tools::check(server_.set_active(v, volume.active), "volume " + volumes_[v].name);
     const std::vector<NamedTexture> textures = volumes_[v].textures();
@@ -45,8 +45,8 @@ void Service::publish(const SourceFrame& frame) {
 void Service::tell_pace() {
   constexpr unsigned kFrames = 3;  // The first frame traces much that later ones reuse.
   const double period = 1 / options_.rate;
-  const bool told = slow_frames_ == kFrames;
-  if (told) return;
+  const bool remarked = slow_frames_ == kFrames;
+  if (remarked) return;
   slow_frames_ = trace_seconds_ > period ? slow_frames_ + 1 : 0;
   if (slow_frames_ < kFrames) return;
   log("a frame takes {:.2g} s to trace, and updates come every {:.2g} s: light changes as frames "
@@ -54,13 +54,13 @@ void Service::tell_pace() {
       trace_seconds_, period, std::min(options_.rate, 0.8 / trace_seconds_));
 }
 
-/// Requests the frame for the next update from a live source, the next in order from others.
+/// Requests the frame for the next update from a live feed, the next in order from others.
 void Service::request_frame() {
   if (!tracer_.idle()) return;
   if (options_.updates > 0 && requested_ >= options_.updates && (played_ || options_.lockstep))
     return;
   const std::uint64_t number = options_.lockstep ? requested_ : made_ + (requested_ > 0 ? 1 : 0);
-  SourceRequest request{options_.start + static_cast<double>(number) / options_.rate};
+  FeedRequest request{options_.start + static_cast<double>(number) / options_.rate};
   for (const ConnectionId id : server_.connections().value_or({})) {
     const auto view = server_.viewpoint(id);
     if (view) request.viewers.push_back(*view);

@@ -24,7 +24,7 @@ using tools::Exit;
 using tools::fail;
 
 constexpr int kQueue = 512;               ///< connections that wait to be accepted
-constexpr std::size_t kNetwork = 8;       ///< bytes of an IPv6 address that tell networks apart
+constexpr std::size_t kNetwork = 8;       ///< bytes of an IPv6 address that identify its network
 constexpr std::size_t kMappedBytes = 12;  ///< in front of an IPv4 address that is mapped to IPv6
 
 std::string text_of(int family, const void* bytes) {

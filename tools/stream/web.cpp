@@ -44,7 +44,7 @@ Web::~Web() = default;
 WebLink* Web::connect(const Address& address) {
   auto link = std::make_unique<WebLink>();
   link->server = address;
-  link->since = now();
+  link->created = now();
   link->peer.address = link->peer.host = to_string(address);
   WebLink* const raw = state_->add(std::move(link));
   {

@@ -53,7 +53,7 @@ WebLink* WebLoop::Loop::enter(const TcpPeer& peer) {
     auto made = std::make_unique<WebLink>();
     made->peer = peer;
     made->accepted = true;
-    made->since = now();
+    made->created = now();
     std::size_t& of_host = hosts[peer.host];
     if (of_host >= state.options.links_per_address) {
       WebLink* const crowded = half_open.take(peer.host);
@@ -111,7 +111,7 @@ int WebLoop::Loop::opened(WebLink* link, lws* wsi) {
   ++open_links;
   link->wsi = wsi;
   link->open = true;
-  state.tell(link, NetEvent::Type::opened);
+  state.add_event(link, NetEvent::Type::opened);
   return 0;
 }
 
@@ -122,8 +122,9 @@ int WebLoop::Loop::write(WebLink* link) {
       const std::lock_guard lock(state.mutex);
       if (link->unsent.empty()) {
         if (!link->closing) return 0;
-        if (link->accepted && link->told == 0) link->told = now();
-        if (link->accepted && now() - link->told < kReading) return 0;  // look_after_all() ends it.
+        if (link->accepted && link->goodbye_sent == 0) link->goodbye_sent = now();
+        // look_after_all() ends it.
+        if (link->accepted && now() - link->goodbye_sent < kReading) return 0;
         if (link->broken) return kill(link), 0;  // Does not wait for its further bytes.
         lws_close_reason(link->wsi, LWS_CLOSE_STATUS_NORMAL, nullptr, 0);
         return -1;
@@ -186,7 +187,8 @@ void WebLoop::Loop::look_after_all() {
   const double at = now();
   std::vector<WebLink*> ends;
   for (WebLink* const link : half_open.all()) {
-    if (at - link->since > state.options.open_timeout && link->wsi != nullptr) ends.push_back(link);
+    if (at - link->created > state.options.open_timeout && link->wsi != nullptr)
+      ends.push_back(link);
   }
   std::vector<WebLink*> open;
   {
@@ -195,7 +197,8 @@ void WebLoop::Loop::look_after_all() {
       if (!link->open) continue;
       open.push_back(link);
       if (link->closing && at - link->closing_since > state.options.timeout) ends.push_back(link);
-      if (link->told > 0 && at - link->told > kReading) lws_callback_on_writable(link->wsi);
+      if (link->goodbye_sent > 0 && at - link->goodbye_sent > kReading)
+        lws_callback_on_writable(link->wsi);
     }
   }
   for (WebLink* const link : open) {

@@ -17,7 +17,7 @@ constexpr double kPerByte = 0.25;        ///< small fragments and records
 bool floods(const WebLink& link, double now) {
   const auto payload = static_cast<double>(link.payload);
   const double beside = static_cast<double>(link.tcp.read) - payload;
-  return beside > kBurst + (now - link.since) * kPerSecond + kPerByte * payload +
+  return beside > kBurst + (now - link.created) * kPerSecond + kPerByte * payload +
                       kPerMessage * static_cast<double>(link.messages);
 }
 

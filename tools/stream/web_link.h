@@ -28,12 +28,12 @@ struct WebLink {
   TcpPeer peer;
   Address server;  ///< that a client connects to
   bool accepted = false;
-  double since = 0;
+  double created = 0;  ///< when
 
   // The transport's thread.
   lws* wsi = nullptr;
   bool open = false, broken = false;
-  double told = 0;                          ///< when the server's reason left; 0: it has not
+  double goodbye_sent = 0;                  ///< when the server's reason left; 0: it has not
   bool trusted = false;                     ///< the server's certificate was verified
   std::string why;                          ///< reason to refuse the certificate
   Message partial;                          ///< the incomplete message that is arriving

@@ -19,7 +19,7 @@ class WebLoop {
   WebLoop(const WebLoop&) = delete;
   WebLoop& operator=(const WebLoop&) = delete;
 
-  /// Tells the thread that the state has work for it. Any thread may call this.
+  /// Wakes the thread: the state has work for it. Any thread may call this.
   void wake();
 
  private:

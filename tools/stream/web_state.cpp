@@ -37,7 +37,7 @@ void WebState::push(NetEvent event) {
   [[maybe_unused]] const auto written = ::write(wake_up, &one, sizeof one);
 }
 
-void WebState::tell(WebLink* link, NetEvent::Type kind, Reason reason) {
+void WebState::add_event(WebLink* link, NetEvent::Type kind, Reason reason) {
   NetEvent event;
   event.type = kind;
   event.link = {nullptr, link};
@@ -74,7 +74,7 @@ void WebState::receive(WebLink* link, std::span<const std::byte> bytes, const We
 void WebState::refuse(WebLink* link, Reason reason) {
   link->broken = true;
   link->partial = {};
-  tell(link, NetEvent::Type::broken, reason);
+  add_event(link, NetEvent::Type::broken, reason);
 }
 
 void WebState::closed(WebLink* link, bool announced, const std::string& why, bool final) {

@@ -31,10 +31,10 @@ struct WebState {
   WebLink* add(std::unique_ptr<WebLink> link);
 
   // The loop's thread:
-  void tell(WebLink* link, NetEvent::Type kind, Reason reason = Reason::left);
+  void add_event(WebLink* link, NetEvent::Type kind, Reason reason = Reason::left);
   /// What cannot be a message is known before it is kept.
   void receive(WebLink* link, std::span<const std::byte> bytes, const WebFrame& frame);
-  /// Nothing more is taken from who breaks a rule; the caller says the reason, and closes.
+  /// Nothing more is taken from a peer that breaks a rule; the caller says the reason, and closes.
   void refuse(WebLink* link, Reason reason);
   /// Forgets it, after telling if the caller knows of it.
   void closed(WebLink* link, bool announced, const std::string& why, bool final);

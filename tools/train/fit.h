@@ -25,7 +25,7 @@ struct Model {
   DistributionTables<RepeatEnds> repeats[2][native::kSets];
 };
 
-/// Clusters each subject's histograms to sets and each set's contexts to distributions. Tells on
+/// Clusters each subject's histograms to sets and each set's contexts to distributions. Prints on
 /// standard error what all of that takes.
 void fit(const std::array<std::vector<Histogram>, kSubjects>& histograms, unsigned threads,
          Model& model);

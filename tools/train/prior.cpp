@@ -31,7 +31,7 @@ Weights prior(Subject subject, bool wide, unsigned context) {
   } else {
     const unsigned magnitude = context % native::kSignStep;
     const auto& thresholds = wide ? native::kWideThresholds : native::kNarrowThresholds;
-    // Narrow planes hardly reach the last one but at first texels, which tell nothing.
+    // Narrow planes hardly reach the last one but at first texels, which say nothing.
     constexpr unsigned kMedium = 10;
     const bool first = !wide && magnitude == native::kFirstTexel;
     w = geometric(thresholds, first ? kMedium : magnitude);

@@ -21,8 +21,7 @@ struct Pool {
 
 [[nodiscard]] double sum(const Weights& weights);
 
-/// Distributions of all contexts: each leans on those like it, these on what the context itself
-/// tells.
+/// Distributions of all contexts: each leans on those like it, these on the context's own counts.
 [[nodiscard]] std::vector<Weights> smooth(Subject subject, const Pool& pool);
 
 }  // namespace gicodec::train

@@ -58,21 +58,21 @@ ddgi::Box box_of(const std::string& text, const ddgi::Scene& scene) {
   return {{c[0], c[1], c[2]}, {c[3], c[4], c[5]}};
 }
 
-kinds::Source trace(kinds::TraceRequest request) {
+kinds::Feed trace(kinds::TraceRequest request) {
   const VectorOptions options = options_of(request.settings, request.scene, request.seed);
   const auto tracer = std::make_shared<kinds::Tracer<VectorServer>>(std::move(request), options);
-  kinds::Source source = kinds::live_source(
+  kinds::Feed feed = kinds::live_feed(
       "vectors",
       tools::take(irradiance_vector_volume(options.grid, options.floats), "irradiance vectors"),
-      [tracer](const kinds::SourceRequest& wanted, kinds::SourceFrame& frame) {
+      [tracer](const kinds::FeedRequest& wanted, kinds::FeedFrame& frame) {
         tracer->server.update(wanted.time);
         frame.volumes[0].textures = {tracer->server.texels()};
       });
-  const VolumeGeometry& geometry = source.volumes[0].geometry = tracer->server.field().geometry;
-  source.remarks.push_back(fmt::format(
+  const VolumeGeometry& geometry = feed.volumes[0].geometry = tracer->server.field().geometry;
+  feed.remarks.push_back(fmt::format(
       "{}x{}x{} vertices, {:.2f} x {:.2f} x {:.2f} m apart", geometry.grid.x, geometry.grid.y,
       geometry.grid.z, geometry.spacing[0], geometry.spacing[1], geometry.spacing[2]));
-  return source;
+  return feed;
 }
 
 std::unique_ptr<kinds::VolumeLight> light(const ddgi::RayScene& /*scene*/, const VolumeDesc& desc,

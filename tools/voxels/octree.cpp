@@ -28,7 +28,7 @@ Voxel mean_of(std::span<const Voxel> children, std::span<const unsigned> numbers
   for (std::size_t d = 0; d < kVoxelDirections; ++d) {
     const auto axis = static_cast<unsigned>(d / 2);
     std::array<float, 8> open{1, 1, 1, 1, 1, 1, 1, 1};  // by column along the axis
-    unsigned lit = 0;                                   // what is buried tells nothing
+    unsigned lit = 0;                                   // buried voxels do not count
     for (std::size_t i = 0; i < children.size(); ++i) {
       lit += children[i].color[d] == Vec3{} ? 0 : 1;
       mean.color[d] += children[i].color[d];

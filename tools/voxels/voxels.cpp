@@ -30,20 +30,20 @@ constexpr std::array kDrawing{
 constexpr std::array<std::string_view, 2> kBricks{"4", "8"};
 constexpr std::array<std::string_view, 2> kForms{"shared-exponent", "halves"};
 
-/// `told`: how many bricks were said to be left out.
-void next(VoxelServer& server, std::uint64_t& told, double time, kinds::SourceFrame& frame) {
+/// `reported`: how many bricks earlier remarks said to be left out.
+void next(VoxelServer& server, std::uint64_t& reported, double time, kinds::FeedFrame& frame) {
   server.update(time);
   const BrickPool& pool = server.pool();
   frame.volumes[0].textures = {{pool.bricks().begin(), pool.bricks().end()},
                                {pool.light().begin(), pool.light().end()}};
   const std::uint64_t lost = server.left_out();
-  if (lost > told) {
+  if (lost > reported) {
     frame.remarks.push_back(
         fmt::format("voxels: there is no room for {} of the finest bricks of this frame; --set "
                     "bricks={} holds them, 0 leaves room for more",
                     lost, std::min<std::uint64_t>(pool.slots() + lost, kMaxBlocks)));
   }
-  told = std::max(told, lost);
+  reported = std::max(reported, lost);
 }
 
 /// "91200 of 0.25 m in 2810 bricks" for each level.
@@ -69,24 +69,24 @@ auto with_memory(const Work& work) {
   }
 }
 
-kinds::Source trace(kinds::TraceRequest request) {
+kinds::Feed trace(kinds::TraceRequest request) {
   const VoxelOptions options = options_of(request.settings, request.scene, request.seed);
   const auto tracer = with_memory(
       [&] { return std::make_shared<kinds::Tracer<VoxelServer>>(std::move(request), options); });
   const VoxelServer& server = tracer->server;
-  kinds::Source source = kinds::live_source(
+  kinds::Feed feed = kinds::live_feed(
       "voxels",
       tools::take(voxel_volume(server.pool().slots(), static_cast<std::uint8_t>(options.shape.side),
                                options.form),
                   "voxels"),
-      [tracer, told = std::uint64_t{0}](const kinds::SourceRequest& wanted,
-                                        kinds::SourceFrame& frame) mutable {
-        with_memory([&] { next(tracer->server, told, wanted.time, frame); });
+      [tracer, reported = std::uint64_t{0}](const kinds::FeedRequest& wanted,
+                                            kinds::FeedFrame& frame) mutable {
+        with_memory([&] { next(tracer->server, reported, wanted.time, frame); });
       });
-  source.volumes[0].geometry = server.geometry();
-  source.remarks.push_back(
+  feed.volumes[0].geometry = server.geometry();
+  feed.remarks.push_back(
       fmt::format("{} slots; voxels: {}", server.pool().slots(), levels(server)));
-  return source;
+  return feed;
 }
 
 std::unique_ptr<kinds::VolumeLight> light(const ddgi::RayScene& /*scene*/, const VolumeDesc& desc,

@@ -39,8 +39,8 @@ class ValueModel {
   }
   /// Without other contexts.
   template <typename Coder>
-  bool flag(Coder& coder, unsigned mixer, std::uint32_t role, bool value) {
-    return flag(coder, mixer, {{{role, 0}, {role, 1}, {role, 2}}}, value);
+  bool flag(Coder& coder, unsigned mixer, std::uint32_t context, bool value) {
+    return flag(coder, mixer, {{{context, 0}, {context, 1}, {context, 2}}}, value);
   }
   /// With a mixer of the caller's.
   template <typename Coder>

@@ -353,7 +353,7 @@ bool Client::resumed() const noexcept { return state_->resumed; }
 const ClientFrame& Client::frame() const noexcept { return state_->frame; }
 bool Client::consistent() const noexcept { return state_->consistent; }
 
-Status Client::read(std::uint16_t volume, std::uint8_t texture, std::uint64_t since,
+Status Client::read(std::uint16_t volume, std::uint8_t texture, std::uint64_t after_serial,
                     TextureView view) const {
   const ClientVolume* const found = state_->frame.find(volume);
   if (found == nullptr) return Status::unknown_volume;
@@ -372,7 +372,7 @@ Status Client::read(std::uint16_t volume, std::uint8_t texture, std::uint64_t si
       places.clear();
       for (std::uint32_t block = 0; block < block_count(chain.decoder.desc()); ++block) {
         const std::uint32_t place = whole ? block : chain.blocks[block];
-        if (held.changed[place] <= since) continue;
+        if (held.changed[place] <= after_serial) continue;
         replaced.push_back(block);
         if (!whole) places.push_back(place);
       }

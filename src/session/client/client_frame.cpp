@@ -23,11 +23,12 @@ const ClientVolume* ClientFrame::find(std::uint16_t id) const noexcept {
   return find_in(volumes, id);
 }
 
-Status ClientTexture::changed_blocks(std::uint64_t since, std::vector<std::uint32_t>& out) const {
+Status ClientTexture::changed_blocks(std::uint64_t after_serial,
+                                     std::vector<std::uint32_t>& out) const {
   return guarded([&]() -> Status {
     out.clear();
     for (std::uint32_t block = 0; block < changed.size(); ++block) {
-      if (changed[block] > since) out.push_back(block);
+      if (changed[block] > after_serial) out.push_back(block);
     }
     return Status::ok;
   });

@@ -43,10 +43,10 @@ void add(Memory& memory, const TextureDesc& desc, const Grid& region, Delivery d
 
 Result<ClientVolume> volume_of(const DescribedVolume& said, const ClientOptions& options,
                                unsigned frames, Memory& memory) {
-  std::vector<ToldTexture> told;
+  std::vector<TextureLayout> layouts;
   for (const DescribedTexture& texture : said.textures)
-    told.push_back({texture.name, texture.layout});
-  auto desc = read_volume_desc(said.kind, said.description, told, options.kinds);
+    layouts.push_back({texture.name, texture.layout});
+  auto desc = read_volume_desc(said.kind, said.description, layouts, options.kinds);
   if (!desc) return desc.status();
   ClientVolume volume{said.id, 0, said.name, *std::move(desc), said.geometry, said.region, {}};
   for (const TextureGroup& group : volume.desc.groups) {

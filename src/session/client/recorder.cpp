@@ -197,8 +197,8 @@ Status ClientRecorder::State::add_snapshot(const Client::State& client, StreamId
   auto encoder = Encoder::create(desc, options);
   if (!encoder) return encoder.status();
   if (const auto presence = client.presence_of(id)) {
-    const Status told = encoder->set_presence(client.chains.at(*presence).decoder.records());
-    if (told != Status::ok) return told;
+    const Status status = encoder->set_presence(client.chains.at(*presence).decoder.records());
+    if (status != Status::ok) return status;
   }
   std::vector<std::byte> texels(static_cast<std::size_t>(texture_bytes(desc)));
   std::vector<std::uint32_t> blocks;

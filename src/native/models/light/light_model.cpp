@@ -1,6 +1,7 @@
 #include "native/models/light/light_model.h"
 
 #include "base/binary_coder.h"
+#include "native/models/light/light_contexts.h"
 #include "quantise/set_order.h"
 
 #include <algorithm>
@@ -8,14 +9,6 @@
 namespace gicodec::native {
 namespace {
 
-// What a context is for, the first number of its hash.
-enum Role : std::uint32_t {
-  kLit = 1,
-  kEqual = 4,
-  kLitHemisphere = 7,
-  kAlpha = 20,  // five
-  kAlphaSign = 240,
-};
 constexpr unsigned kAlphaChannel = 13;
 constexpr unsigned kLitMixer = 0, kEqualMixer = 2, kHemisphereMixer = 4;
 

@@ -2,26 +2,13 @@
 #include "native/models/light/light_model.h"
 
 #include "base/binary_coder.h"
+#include "native/models/light/light_contexts.h"
 
 #include <algorithm>
 
 namespace gicodec::native {
 namespace {
 
-// What a context is for, the first number of its hash; what is added: 1 for the second of two
-// similar numbers, 2 for the second of two opposite hemispheres.
-enum Role : std::uint32_t {
-  kAcross = 10,  // of a direction's coordinates across the axis: five
-  kAlong = 30,   // five, and three of the sign
-  kExponent = 40,
-  kGreen = 60,
-  kOther = 80,
-  kAcrossSign = 200,
-  kAlongSign = 212,
-  kExponentSign = 216,
-  kGreenSign = 222,
-  kOtherSign = 228,
-};
 // Channels of numbers.
 enum Channel : unsigned {
   kAcrossChannel = 0,

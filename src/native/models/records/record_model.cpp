@@ -2,6 +2,7 @@
 
 #include "base/binary_coder.h"
 #include "native/models/numbers.h"
+#include "native/models/records/record_contexts.h"
 #include "quantise/component_code.h"
 #include "quantise/set_order.h"
 #include "texture/presence.h"
@@ -11,27 +12,6 @@
 namespace gicodec::native {
 namespace {
 
-// What a context is for, the first number of its hash; those of components are added. Others are in
-// record_values.cpp and record_rows.cpp.
-enum Role : std::uint32_t {
-  kChanged = 1,
-  kChanged2 = 2,
-  kChanged3 = 3,
-  kComponents = 7,
-  kComponents2 = 8,
-  kComponents3 = 9,
-  kSame = 32,
-  kSame2 = 48,
-  kSame3 = 64,
-  kMatch = 80,
-  kMatch2 = 96,
-  kMatch3 = 112,
-  kNew = 128,
-  kNewBefore = 144,
-  kNewOthers = 160,
-  kNewBoth = 176,
-  kNewEqual = 192,
-};
 // Mixers of flags, below those of signs.
 constexpr unsigned kChangedMixer = 0, kComponentsMixer = 2, kSameMixer = 16, kMatchMixer = 32;
 constexpr unsigned kCandidates = 3, kTopBits = 8;

@@ -1,32 +1,12 @@
 // The record model in blocks of one row, which have no rows above: by similar records and copies.
 #include "base/binary_coder.h"
 #include "native/models/numbers.h"
+#include "native/models/records/record_contexts.h"
 #include "native/models/records/record_model.h"
 
 namespace gicodec::native {
 namespace {
 
-// What a context is for, the first number of its hash; those of components are added. Others than
-// those of record_model.cpp.
-enum Role : std::uint32_t {
-  kChanged = 4,
-  kChanged2 = 5,
-  kChanged3 = 6,
-  kCopy2 = 10,
-  kCopy3 = 11,
-  kHigh = 208,
-  kHighSimilar = 224,
-  kHighPrevious = 240,
-  kHighLast = 256,
-  kHighBoth = 272,
-  kDown = 400,
-  kDownPrevious = 416,
-  kDownSimilar = 432,
-  kLow = 448,
-  kLowPlace = 464,
-  kLowHalf = 480,
-  kCopy = 496,
-};
 constexpr unsigned kChangedMixer = 0, kDownMixer = 80, kLowMixer = 96, kCopyMixer = 208;
 constexpr unsigned kChannels =
     static_cast<unsigned>(kMaxComponents);  ///< of components, from here on
@@ -51,10 +31,10 @@ bool RecordModel::code_changed_in_row(Coder& coder, const Seen& here, std::uint3
   const std::uint32_t was = top_bits(here.previous[last], record.components[last].bits, kTopBits);
   return values_->flag(
       coder, kChangedMixer + known,
-      {{{hashed(kChanged, known, similar_change, must ? 1U : 0U), must ? 0 : was},
-        {hashed(kChanged2, known, std::min(left_, kFew), must ? 0 : history_ & 3),
+      {{{hashed(kRowChanged, known, similar_change, must ? 1U : 0U), must ? 0 : was},
+        {hashed(kRowChanged2, known, std::min(left_, kFew), must ? 0 : history_ & 3),
          std::min(changes_, kMany)},
-        {hashed(kChanged3, known, must ? 64U : std::min(index, 63U)), similar_change}}},
+        {hashed(kRowChanged3, known, must ? 64U : std::min(index, 63U)), similar_change}}},
       changed);
 }
 

@@ -2,24 +2,13 @@
 // residual coded (docs/native/records.md, "Numbers").
 #include "base/binary_coder.h"
 #include "native/models/numbers.h"
+#include "native/models/records/record_contexts.h"
 #include "native/models/records/record_model.h"
 
 #include <algorithm>
 
 namespace gicodec::native {
 namespace {
-
-// What a context is for, the first number of its hash; those of components are added. Others are in
-// record_model.cpp and record_rows.cpp.
-enum Role : std::uint32_t {
-  kAround = 288,
-  kOthers = 304,
-  kBoth = 320,
-  kSize = 336,
-  kNoise = 352,
-  kSign = 368,
-  kSignOthers = 384,
-};
 
 /// Of what a component is predicted.
 enum class Scale { previous, codes, linear };

@@ -2,40 +2,13 @@
 
 #include "base/binary_coder.h"
 #include "native/models/numbers.h"
+#include "native/models/unordered/set_contexts.h"
 
 #include <cstring>
 
 namespace gicodec::native {
 namespace {
 
-// What a context is for, the first number of its hash; those of axes and components are added.
-enum Role : std::uint32_t {
-  kOrdered = 1,
-  kZeros = 2,
-  kShared = 10,  // + axis, and the next ones likewise
-  kShared2 = 13,
-  kShared3 = 16,
-  kRecent = 20,
-  kRecentLeaf = 23,
-  kRecent2 = 26,
-  kRecent2Leaf = 29,
-  kRecent3 = 32,
-  kRecent3Leaf = 35,
-  kLeft = 40,
-  kLeft2 = 41,
-  kLeft3 = 42,
-  kBit = 50,
-  kBit2 = 53,
-  kBit3 = 56,
-  kEqual = 100,  // + component
-  kEqual2 = 116,
-  kEqual3 = 132,
-  kValue = 150,
-  kAfterOthers = 166,
-  kNearBefore = 182,
-  kOnPlane = 198,
-  kInCell = 214,
-};
 // Mixers of flags.
 constexpr unsigned kOrderedMixer = 0, kZerosMixer = 1, kSharedMixer = 16, kRecentMixer = 64,
                    kBitMixer = 128, kEqualMixer = 160;

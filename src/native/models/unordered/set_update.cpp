@@ -2,28 +2,13 @@
 
 #include "base/binary_coder.h"
 #include "native/models/numbers.h"
+#include "native/models/unordered/set_contexts.h"
 
 #include <cstring>
 
 namespace gicodec::native {
 namespace {
 
-// What a context is for, the first number of its hash; those of components are added. Others than
-// the set model's.
-enum Role : std::uint32_t {
-  kEqual = 3,
-  kPairs = 4,
-  kKept = 5,
-  kChanged = 60,
-  kUnchanged = 230,  // + component, and the next ones likewise
-  kUnchanged2 = 246,
-  kUnchanged3 = 262,
-  kDifference = 278,
-  kAfterDifference = 294,
-  kFromPrevious = 310,
-  kFromBoth = 326,
-  kAfterChanges = 342,
-};
 // Mixers of flags.
 constexpr unsigned kEqualMixer = 2, kPairsMixer = 3, kKeptMixer = 4, kChangedMixer = 8,
                    kUnchangedMixer = 176;
@@ -51,7 +36,7 @@ void SetUpdate::encode(BinaryEncoder& coder, const Record& record,
                        std::span<const std::byte> previous, std::span<const std::byte> records) {
   if (!previous.empty() && !records.empty()) {
     const bool same = std::memcmp(records.data(), previous.data(), records.size()) == 0;
-    if (values_->flag(coder, kEqualMixer, kEqual, same)) return;
+    if (values_->flag(coder, kEqualMixer, kSetEqual, same)) return;
     if (values_->flag(coder, kPairsMixer, kPairs, pair(record, previous, records))) {
       code_states(coder, static_cast<std::uint32_t>(records.size() / record.bytes));
       set_.encode(coder, record, new_);
@@ -65,7 +50,7 @@ void SetUpdate::encode(BinaryEncoder& coder, const Record& record,
 bool SetUpdate::decode(BinaryDecoder& coder, const Record& record,
                        std::span<const std::byte> previous, std::span<std::byte> records) {
   if (!previous.empty() && !records.empty()) {
-    if (values_->flag(coder, kEqualMixer, kEqual, false)) {
+    if (values_->flag(coder, kEqualMixer, kSetEqual, false)) {
       std::memcpy(records.data(), previous.data(), records.size());
       return true;
     }
@@ -140,17 +125,17 @@ bool SetUpdate::code_states(Coder& coder, std::uint32_t most) {
 template <typename Coder>
 SetUpdate::RecordState SetUpdate::code_state(Coder& coder, RecordState state) {
   const std::uint32_t last = history_ & 3;
-  const auto flag = [&](unsigned mixer, std::uint32_t role, bool value) {
+  const auto flag = [&](unsigned mixer, std::uint32_t context, bool value) {
     return values_->flag(coder, mixer + last,
-                         {{{role, last},
-                           {hashed(role + 1, history_ & 0xFF), 0},
-                           {hashed(role + 2, history_ & 0xFFF), 0}}},
+                         {{{context, last},
+                           {hashed(context + 1, history_ & 0xFF), 0},
+                           {hashed(context + 2, history_ & 0xFFF), 0}}},
                          value);
   };
   if (flag(kKeptMixer, kKept, state == kept)) {
     state = kept;
   } else {
-    state = flag(kChangedMixer, kChanged, state == changed) ? changed : removed;
+    state = flag(kChangedMixer, kRecordChanged, state == changed) ? changed : removed;
   }
   history_ = history_ << 2 | state;
   return state;

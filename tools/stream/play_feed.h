@@ -1,7 +1,7 @@
 // Recordings that a server plays.
 #pragma once
 
-#include "kinds/source.h"
+#include "kinds/feed.h"
 
 #include <gicodec/isa.h>
 
@@ -9,11 +9,11 @@
 
 namespace gicodec::streaming {
 
+using kinds::Feed;
+using kinds::FeedFrame;
+using kinds::FeedRequest;
+using kinds::FeedVolume;
 using kinds::is_probes;
-using kinds::Source;
-using kinds::SourceFrame;
-using kinds::SourceRequest;
-using kinds::SourceVolume;
 
 struct PlayOptions {
   bool loop = false;              ///< begin again after the last frame, else stay there
@@ -25,6 +25,6 @@ struct PlayOptions {
 
 /// Plays a container, or the dumps of a folder, after checking it. Throws tools::Error of
 /// Exit::bad_input if something is missing or damaged, unless that is allowed.
-[[nodiscard]] Source play_source(const std::string& path, const PlayOptions& options);
+[[nodiscard]] Feed play_feed(const std::string& path, const PlayOptions& options);
 
 }  // namespace gicodec::streaming

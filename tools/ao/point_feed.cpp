@@ -1,4 +1,4 @@
-// AO points as a source of frames, and their settings.
+// AO points as a feed of frames, and their settings.
 #include "ao.h"
 #include "point_light.h"
 #include "point_server.h"
@@ -40,7 +40,7 @@ ServerOptions options_of(const kinds::TraceRequest& request) {
   return options;
 }
 
-/// What one source keeps from frame to frame.
+/// What one feed keeps from frame to frame.
 struct Tracer {
   ddgi::Scene scene;
   ddgi::ThreadPool pool;
@@ -59,32 +59,33 @@ ExtendedView view_of(const Viewpoint& viewer, float margin) {
           margin};
 }
 
-kinds::Source trace(kinds::TraceRequest request) {
+kinds::Feed trace(kinds::TraceRequest request) {
   const ServerOptions options = options_of(request);
   const auto margin = static_cast<float>(request.settings.number("view-margin", 0, 180));
   const auto tracer = std::make_shared<Tracer>(std::move(request), options);
   const PointServer& server = tracer->server;
-  kinds::Source source = kinds::live_source(
-      "points", server.volume(),
-      [tracer, margin](const kinds::SourceRequest& wanted, kinds::SourceFrame& frame) {
-        tracer->rays.set_state(tracer->scene.state_at(wanted.time));
-        std::vector<ExtendedView> views;
-        if (!wanted.all) {
-          for (const Viewpoint& viewer : wanted.viewers) views.push_back(view_of(viewer, margin));
-        }
-        tracer->server.update(tracer->rays, views);
-        frame.volumes[0].textures = tracer->server.textures();
-      });
-  source.remarks = server.generated().remarks;
+  kinds::Feed feed =
+      kinds::live_feed("points", server.volume(),
+                       [tracer, margin](const kinds::FeedRequest& wanted, kinds::FeedFrame& frame) {
+                         tracer->rays.set_state(tracer->scene.state_at(wanted.time));
+                         std::vector<ExtendedView> views;
+                         if (!wanted.all) {
+                           for (const Viewpoint& viewer : wanted.viewers)
+                             views.push_back(view_of(viewer, margin));
+                         }
+                         tracer->server.update(tracer->rays, views);
+                         frame.volumes[0].textures = tracer->server.textures();
+                       });
+  feed.remarks = server.generated().remarks;
   const PointMemory::Statistics& held = server.memory().statistics();
-  source.remarks.push_back(fmt::format("{} points in {} cells of {} instances", held.points,
-                                       held.cells, server.memory().grids().size()));
+  feed.remarks.push_back(fmt::format("{} points in {} cells of {} instances", held.points,
+                                     held.cells, server.memory().grids().size()));
   if (held.overflow() > 0) {
-    source.remarks.push_back(
+    feed.remarks.push_back(
         fmt::format("{} points found no room: {} in a cell, {} in a bucket, {} in the pool",
                     held.overflow(), held.full_cells, held.full_buckets, held.full_pool));
   }
-  return source;
+  return feed;
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "source_fit.h"
+#include "feed_fit.h"
 
 #include "common/backend_flags.h"
 #include "dump/error.h"
@@ -12,7 +12,7 @@ namespace gicodec::streaming {
 using tools::Exit;
 using tools::fail;
 
-void check_backend(const ServerFlags& o, const SourceVolume& volume) {
+void check_backend(const ServerFlags& o, const FeedVolume& volume) {
   const auto all = built_in_backends();
   const auto backend = std::ranges::find(all, o.backend, &Backend::name);
   if (backend == all.end()) return;

@@ -1,5 +1,5 @@
-// What a source gives comes back from its container, frame by frame, whatever the kind.
-#include "programs/source_container.h"
+// What a feed gives comes back from its container, frame by frame, whatever the kind.
+#include "programs/feed_container.h"
 #include "payload_conformance.h"
 #include "tools/dump_support.h"
 
@@ -26,22 +26,22 @@ ClientVolume shown(const tools::ContainerInput& input, std::size_t first, std::s
   return volume;
 }
 
-class SourceContainers : public testing::TestWithParam<std::size_t> {};
+class FeedContainers : public testing::TestWithParam<std::size_t> {};
 
-TEST_P(SourceContainers, GiveBackEveryFrame) {
+TEST_P(FeedContainers, GiveBackEveryFrame) {
   const test::Row row = test::payload_rows()[GetParam()];
   if (find_kind(row.volume.kind) == nullptr) GTEST_SKIP() << "a kind of the tests' own";
   if (row.volume.kind == kKindTextures) GTEST_SKIP() << "slots are placed by metadata";
   tools::TemporaryDirectory directory;
   const std::string path = directory.path("x.gic");
-  Source source;
-  source.scene = {"somewhere", 7};
-  source.volumes = {{"first", {row.volume.groups[0].textures[0].desc.grid}, row.volume},
-                    {"second", {row.volume.groups[0].textures[0].desc.grid}, row.volume}};
+  Feed feed;
+  feed.scene = {"somewhere", 7};
+  feed.volumes = {{"first", {row.volume.groups[0].textures[0].desc.grid}, row.volume},
+                  {"second", {row.volume.groups[0].textures[0].desc.grid}, row.volume}};
   test::Generator random(GetParam() + 1);
   std::vector<test::Contents> first, second;
   test::Contents a = test::blank(row.volume), b = a;
-  SourceContainer container(path, source, {2, 5}, "native");
+  FeedContainer container(path, feed, {2, 5}, "native");
   for (std::uint64_t frame = 0; frame < 5; ++frame) {
     if (frame != 3) test::change(row.volume, a, random);
     if (frame % 2 == 0) test::change(row.volume, b, random);
@@ -52,7 +52,7 @@ TEST_P(SourceContainers, GiveBackEveryFrame) {
   container.finish();
 
   tools::ContainerInput input(path);
-  EXPECT_EQ(input.description().scene, source.scene);
+  EXPECT_EQ(input.description().scene, feed.scene);
   const auto times = times_of(input.description());
   ASSERT_TRUE(times);
   EXPECT_EQ(times->at(3), 2.6);
@@ -90,11 +90,11 @@ TEST(StoredVolumes, ShowWholeFramesOnly) {
   ASSERT_NE(row, rows.end());
   tools::TemporaryDirectory directory;
   const std::string path = directory.path("x.gic"), cut = directory.path("cut.gic");
-  Source source;
-  source.volumes = {{"first", {row->volume.groups[0].textures[0].desc.grid}, row->volume}};
+  Feed feed;
+  feed.volumes = {{"first", {row->volume.groups[0].textures[0].desc.grid}, row->volume}};
   test::Generator random(1);
   std::vector<test::Contents> frames(3, test::blank(row->volume));
-  SourceContainer container(path, source, {}, "native");
+  FeedContainer container(path, feed, {}, "native");
   for (std::uint64_t frame = 0; frame < frames.size(); ++frame) {
     if (frame > 0) frames[frame] = frames[frame - 1];
     test::change(row->volume, frames[frame], random);
@@ -124,7 +124,7 @@ TEST(StoredVolumes, ShowWholeFramesOnly) {
   EXPECT_GT(refused, 10U);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, SourceContainers,
+INSTANTIATE_TEST_SUITE_P(All, FeedContainers,
                          testing::Range(std::size_t{0}, test::payload_rows().size()));
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Source: volumes, frame after frame, traced or played, to stream or to write to containers.
+// Feed: volumes frame after frame, traced or played, to stream or to write to containers.
 #pragma once
 
 #include "dump/dump.h"
@@ -19,7 +19,7 @@
 
 namespace gicodec::kinds {
 
-struct SourceVolume {
+struct FeedVolume {
   std::string name;
   VolumeGeometry geometry;
   VolumeDesc desc;
@@ -39,17 +39,17 @@ struct SourceVolume {
   }
 };
 
-[[nodiscard]] inline bool is_probes(const SourceVolume& volume) {
+[[nodiscard]] inline bool is_probes(const FeedVolume& volume) {
   return volume.desc.kind == kKindProbes;
 }
 
-struct SourceRequest {
+struct FeedRequest {
   double time = 0;                      ///< of the scene, seconds
   std::vector<Viewpoint> viewers = {};  ///< camera-locked volumes follow the first
   bool all = false;                     ///< a client wants everything, whatever the viewers
 };
 
-struct SourceFrame {
+struct FeedFrame {
   struct Volume {
     Scroll scroll{};
     BlockMask active;                              ///< of the first group; empty: all are
@@ -62,32 +62,31 @@ struct SourceFrame {
   std::uint64_t rays = 0;                 ///< traced for it, if counted
 };
 
-struct Source {
-  std::vector<SourceVolume> volumes;
-  SceneId scene;                                          ///< that was traced, if known
-  bool played = false;                                    ///< frames have a fixed order
-  std::function<SourceFrame(const SourceRequest&)> next;  ///< throws tools::Error
-  std::vector<std::string> remarks = {};                  ///< for the operator at the start
+struct Feed {
+  std::vector<FeedVolume> volumes;
+  SceneId scene;                                      ///< that was traced, if known
+  bool played = false;                                ///< frames have a fixed order
+  std::function<FeedFrame(const FeedRequest&)> next;  ///< throws tools::Error
+  std::vector<std::string> remarks = {};              ///< for the operator at the start
 };
 
-/// A source of one volume. `trace` fills in the textures and remarks of each frame.
-[[nodiscard]] inline Source live_source(
-    std::string name, VolumeDesc desc,
-    std::function<void(const SourceRequest&, SourceFrame&)> trace) {
-  Source source;
+/// A feed of one volume. `trace` fills in the textures and remarks of each frame.
+[[nodiscard]] inline Feed live_feed(std::string name, VolumeDesc desc,
+                                    std::function<void(const FeedRequest&, FeedFrame&)> trace) {
+  Feed feed;
   VolumeGeometry geometry;
   geometry.grid = desc.groups.front().textures.front().desc.grid;
-  source.volumes.push_back({std::move(name), geometry, std::move(desc)});
-  source.next = [trace = std::move(trace)](const SourceRequest& request) {
+  feed.volumes.push_back({std::move(name), geometry, std::move(desc)});
+  feed.next = [trace = std::move(trace)](const FeedRequest& request) {
     const auto start = std::chrono::steady_clock::now();
-    SourceFrame frame;
+    FeedFrame frame;
     frame.time = request.time;
     frame.volumes.resize(1);
     trace(request, frame);
     frame.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return frame;
   };
-  return source;
+  return feed;
 }
 
 }  // namespace gicodec::kinds

@@ -1,7 +1,7 @@
-// A source's frames as a container.
+// A feed's frames as a container.
 #pragma once
 
-#include "kinds/source.h"
+#include "kinds/feed.h"
 
 #include "common/container_output.h"
 #include "common/frame_times.h"
@@ -18,12 +18,12 @@ namespace gicodec::kinds {
 using tools::FrameTimes;
 using tools::times_of;
 
-class SourceContainer {
+class FeedContainer {
  public:
   /// All calls throw tools::Error.
-  SourceContainer(const std::string& path, const Source& source, const FrameTimes& times,
-                  const std::string& backend);
-  void add(std::uint64_t frame, const SourceFrame& contents);
+  FeedContainer(const std::string& path, const Feed& feed, const FrameTimes& times,
+                const std::string& backend);
+  void add(std::uint64_t frame, const FeedFrame& contents);
   void finish();
   /// Instead of finish(): keeps what was written; returns the file's name, empty if there is none.
   [[nodiscard]] std::string leave() noexcept { return output_.leave(); }

@@ -1,4 +1,4 @@
-#include "source_container.h"
+#include "feed_container.h"
 
 #include "common/backend_flags.h"
 #include "common/stored_texture.h"
@@ -13,11 +13,10 @@
 namespace gicodec::kinds {
 namespace {
 
-ContainerDescription describe(const Source& source, const FrameTimes& times,
-                              const std::string& path) {
+ContainerDescription describe(const Feed& feed, const FrameTimes& times, const std::string& path) {
   ContainerDescription description;
-  description.scene = source.scene;
-  for (const SourceVolume& volume : source.volumes) {
+  description.scene = feed.scene;
+  for (const FeedVolume& volume : feed.volumes) {
     tools::check(add_volume(description, volume.name, volume.desc), path);
     VolumeEntry& entry = description.volumes.back();
     entry.geometry = volume.geometry;
@@ -31,7 +30,7 @@ ContainerDescription describe(const Source& source, const FrameTimes& times,
       TextureEntry& texture = description.textures[entry.first_texture + i];
       tools::StoredTexture stored;
       stored.info = volume.files[i];
-      set_attribute(stored.info.attributes, {tools::kSceneAttribute, "string", source.scene.name});
+      set_attribute(stored.info.attributes, {tools::kSceneAttribute, "string", feed.scene.name});
       set_attribute(stored.info.attributes, tools::time_attribute(times.start));
       texture.metadata = to_entry(stored).metadata;
     }
@@ -43,10 +42,10 @@ ContainerDescription describe(const Source& source, const FrameTimes& times,
 
 }  // namespace
 
-SourceContainer::SourceContainer(const std::string& path, const Source& source,
-                                 const FrameTimes& times, const std::string& backend)
-    : output_(path, describe(source, times, path)) {
-  for (const SourceVolume& volume : source.volumes) {
+FeedContainer::FeedContainer(const std::string& path, const Feed& feed, const FrameTimes& times,
+                             const std::string& backend)
+    : output_(path, describe(feed, times, path)) {
+  for (const FeedVolume& volume : feed.volumes) {
     VolumeEncoderOptions options;
     options.backend = backend;
     options.gop = 0;  // keyframes would need blocks that did not change
@@ -61,7 +60,7 @@ SourceContainer::SourceContainer(const std::string& path, const Source& source,
   }
 }
 
-void SourceContainer::add(std::uint64_t frame, const SourceFrame& contents) {
+void FeedContainer::add(std::uint64_t frame, const FeedFrame& contents) {
   std::size_t texture = 0;
   for (std::size_t v = 0; v < encoders_.size(); ++v) {
     const auto& textures = contents.volumes[v].textures;
@@ -74,6 +73,6 @@ void SourceContainer::add(std::uint64_t frame, const SourceFrame& contents) {
   }
 }
 
-void SourceContainer::finish() { output_.finish(); }
+void FeedContainer::finish() { output_.finish(); }
 
 }  // namespace gicodec::kinds

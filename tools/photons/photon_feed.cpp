@@ -43,7 +43,7 @@ PoolOptions options_of(const kinds::Settings& settings, std::uint32_t seed) {
   return options;
 }
 
-/// What one source keeps from frame to frame.
+/// What one feed keeps from frame to frame.
 struct Tracer {
   ddgi::Scene scene;
   PoolOptions options;
@@ -53,7 +53,7 @@ struct Tracer {
   VolumeDesc volume = tools::take(
       photon_volume(options.batches, options.shots.capacity, options.shots.form), "photons");
   std::vector<std::vector<std::byte>> textures;
-  bool told = false;  ///< that there is no room
+  bool reported = false;  ///< a remark said that there is no room
 
   explicit Tracer(kinds::TraceRequest request)
       : scene(std::move(request.scene)),
@@ -64,12 +64,12 @@ struct Tracer {
     }
   }
 
-  void next(double time, kinds::SourceFrame& frame) {
+  void next(double time, kinds::FeedFrame& frame) {
     rays.set_state(scene.state_at(time));
     const BatchPool::Update update = batches.update(threads);
     for (const std::uint32_t slot : update.changed) write(slot);
     frame.volumes[0].textures = textures;
-    if (update.wanted > options.batches && !std::exchange(told, true)) {
+    if (update.wanted > options.batches && !std::exchange(reported, true)) {
       frame.remarks.push_back(fmt::format(
           "photons: the lights are worth {} batches, there is room for {}; the brightest have "
           "fewer: --set max-batches={} holds them all, a lower per-watt asks for fewer",
@@ -107,16 +107,16 @@ constinit const kinds::TracedKind kTracedPhotons{
 
 std::span<const kinds::Setting> photon_settings() { return kSettings; }
 
-kinds::Source trace(kinds::TraceRequest request) {
+kinds::Feed trace(kinds::TraceRequest request) {
   const auto tracer = std::make_shared<Tracer>(std::move(request));
-  kinds::Source source =
-      kinds::live_source("photons", tracer->volume,
-                         [tracer](const kinds::SourceRequest& wanted, kinds::SourceFrame& frame) {
-                           tracer->next(wanted.time, frame);
-                         });
-  source.remarks = {
+  kinds::Feed feed =
+      kinds::live_feed("photons", tracer->volume,
+                       [tracer](const kinds::FeedRequest& wanted, kinds::FeedFrame& frame) {
+                         tracer->next(wanted.time, frame);
+                       });
+  feed.remarks = {
       "photons: only lights send out photons; emissive materials and the sky light nothing"};
-  return source;
+  return feed;
 }
 
 }  // namespace gicodec::photons

@@ -1,4 +1,4 @@
-#include "source.h"
+#include "play_feed.h"
 
 #include "clock.h"
 #include "common/container_input.h"
@@ -11,7 +11,7 @@
 #include "dump/geometry_attributes.h"
 #include "dump/sequence.h"
 #include "log.h"
-#include "programs/source_container.h"
+#include "programs/feed_container.h"
 #include "programs/stored_volume.h"
 #include "recording.h"
 
@@ -36,7 +36,7 @@ struct Player {
   /// Reads the next frame. False at the end, where the textures stay as they are.
   virtual bool advance() = 0;
 
-  std::vector<SourceVolume> volumes;             ///< without geometry, if it is unknown
+  std::vector<FeedVolume> volumes;               ///< without geometry, if it is unknown
   std::vector<std::vector<std::byte>> textures;  ///< of all volumes
   kinds::FrameFacts facts;
   Recording recording;               ///< only its complete frames are played
@@ -61,7 +61,7 @@ std::vector<std::string> remarks_on(const Recording& recording, bool allowed) {
   return remarks;
 }
 
-/// Tells a file from another at the same path, and from itself with more frames.
+/// Differs between a file and another at the same path, or the same with more frames.
 struct FileState {
   std::filesystem::file_time_type written;
   std::uintmax_t size = 0;
@@ -99,7 +99,7 @@ class RecordingPlayer final : public Player {
       state_ = state;
     }
     open();
-    const auto same = [](const SourceVolume& a, const SourceVolume& b) {
+    const auto same = [](const FeedVolume& a, const FeedVolume& b) {
       return a.name == b.name && a.desc == b.desc;
     };
     if (std::ranges::equal(choose().volumes, volumes, same)) return;
@@ -140,7 +140,7 @@ class RecordingPlayer final : public Player {
   }
 
   struct Chosen {
-    std::vector<SourceVolume> volumes;
+    std::vector<FeedVolume> volumes;
     std::string remark;  ///< on volumes that cannot be played; empty: all can
   };
   Chosen choose() {
@@ -179,15 +179,16 @@ class RecordingPlayer final : public Player {
   }
 
   /// The volume as stored, with the layout of decoded textures.
-  [[nodiscard]] SourceVolume volume(const VolumeEntry& entry) const {
-    SourceVolume made{entry.name, entry.geometry.value_or(VolumeGeometry{}), entry.desc};
+  [[nodiscard]] FeedVolume volume(const VolumeEntry& entry) const {
+    FeedVolume made{entry.name, entry.geometry.value_or(VolumeGeometry{}), entry.desc};
     std::size_t id = entry.first_texture;
     for (TextureGroup& group : made.desc.groups) {
       for (NamedTexture& texture : group.textures) {
         const tools::StoredTexture& stored = input_->textures()[id++];
         texture.desc = stored.info.desc;
-        const bool told = stored.lossy.empty() || stored.largest_error > 0;
-        made.errors.push_back(told ? stored.largest_error : std::numeric_limits<float>::infinity());
+        const bool bounded = stored.lossy.empty() || stored.largest_error > 0;
+        made.errors.push_back(bounded ? stored.largest_error
+                                      : std::numeric_limits<float>::infinity());
       }
     }
     if (!entry.geometry) made.geometry.grid = made.desc.groups.front().textures.front().desc.grid;
@@ -202,9 +203,9 @@ class RecordingPlayer final : public Player {
   std::uint64_t at_ = 0;
 };
 
-/// `told`: the dumps' attributes say what they hold.
-[[noreturn]] void fail_no_probes(const std::string& folder, bool told) {
-  if (told) {
+/// `described`: the dumps' attributes say what they hold.
+[[noreturn]] void fail_no_probes(const std::string& folder, bool described) {
+  if (described) {
     fail(Exit::bad_input,
          "{}: its dumps are of other blocks than probes, which alone are played; the application "
          "that they are for can stream them itself",
@@ -303,7 +304,7 @@ bool advance(Player& player, std::uint64_t frames) {
 
 }  // namespace
 
-Source play_source(const std::string& path, const PlayOptions& options) {
+Feed play_feed(const std::string& path, const PlayOptions& options) {
   std::shared_ptr<Player> player = open(path, options);
   std::vector<std::string> remarks = remarks_on(player->recording, options.allow_incomplete);
   if (!advance(*player, 0)) fail(Exit::bad_input, "{}: has no frame; record it again", path);
@@ -312,31 +313,31 @@ Source play_source(const std::string& path, const PlayOptions& options) {
   if (const auto s = player->facts.spacing) geometry.spacing = *s;
   player->rewind(options.allow_incomplete);
 
-  Source source{player->volumes,
-                {ddgi::scene_name(player->facts.scene.value_or("")), 0},
-                true,
-                {},
-                std::move(remarks)};
+  Feed feed{player->volumes,
+            {ddgi::scene_name(player->facts.scene.value_or("")), 0},
+            true,
+            {},
+            std::move(remarks)};
   auto active = std::make_shared<std::vector<BlockMask>>();
-  for (const SourceVolume& volume : source.volumes) {
+  for (const FeedVolume& volume : feed.volumes) {
     const std::uint32_t blocks = block_count(volume.desc.groups.front().textures.front().desc);
     active->emplace_back(is_probes(volume) ? blocks : 0);
   }
   auto frames = std::make_shared<std::uint64_t>(0);
-  source.next = [=](const SourceRequest&) {
+  feed.next = [=](const FeedRequest&) {
     const double start = now();
     if (!advance(*player, *frames) && options.loop) {
       player->rewind(options.allow_incomplete);
       if (!advance(*player, *frames))
         fail(Exit::bad_input, "{}: has no frame; record it again", path);
     }
-    SourceFrame frame;
+    FeedFrame frame;
     frame.remarks = std::exchange(player->remarks, {});
     frame.time = player->facts.time.value_or(static_cast<double>(*frames) / options.rate);
     ++*frames;
     auto texture = player->textures.begin();
     for (std::size_t v = 0; v < player->volumes.size(); ++v) {
-      const SourceVolume& volume = player->volumes[v];
+      const FeedVolume& volume = player->volumes[v];
       const auto first = texture;
       texture += static_cast<std::ptrdiff_t>(volume.textures().size());
       const auto& group = volume.desc.groups.front().textures;
@@ -348,7 +349,7 @@ Source play_source(const std::string& path, const PlayOptions& options) {
     frame.seconds = now() - start;
     return frame;
   };
-  return source;
+  return feed;
 }
 
 }  // namespace gicodec::streaming
