@@ -77,7 +77,7 @@ struct OutgoingPacket {
 /// Blocks in the packets of an update, shared packets counted once: a measure of its cost.
 struct WrittenBlocks {
   std::uint64_t all = 0;
-  std::uint64_t unicast = 0;   ///< in packets that Server::set_unicast_block_limit() limits
+  std::uint64_t for_few = 0;   ///< in packets that Server::set_limit_for_few() limits
   std::uint64_t examined = 0;  ///< candidates for unicast packets
 };
 

@@ -210,7 +210,7 @@ class Server {
   /// shared streams (at least one packet is always made), and so many in unicast packets. Sessions
   /// with pending blocks get even shares of the latter, or take turns if a share is less than a
   /// block. Blocks beyond the limit stay pending. 0, the default: no limit.
-  void set_unicast_block_limit(std::uint32_t blocks) noexcept;
+  void set_limit_for_few(std::uint32_t blocks) noexcept;
   /// Adapts that limit: lowers it while updates take longer than `budget`, else raises it.
   /// `elapsed`: how long the last update took. In seconds; ignores values that are no times.
   void report_update_time(double elapsed, double budget) noexcept;

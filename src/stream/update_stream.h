@@ -66,12 +66,12 @@ class UpdateStream {
     return static_cast<std::uint32_t>(sent_.blocks().size());
   }
   /// A block's block in the volume.
-  [[nodiscard]] std::uint32_t source(std::uint32_t block) const noexcept {
+  [[nodiscard]] std::uint32_t volume_block(std::uint32_t block) const noexcept {
     return volume_blocks_.empty() ? block : volume_blocks_[block];
   }
   /// The current contents of a block.
   [[nodiscard]] BlockId current(std::uint32_t block) const noexcept {
-    return history_->current()[source(block)];
+    return history_->current()[volume_block(block)];
   }
   /// True if the receiver's contents are not current, or belong to another place.
   [[nodiscard]] bool differs(std::uint32_t block) const noexcept {

@@ -241,7 +241,7 @@ TEST(Lots, OnlyRegionsThatHoldWhatIsNamedAreWaitedFor) {
   ASSERT_TRUE(distributor.add_volume(world.volume, {{8, 1, 1}}).ok());
   const ClientId client = *distributor.connect(Delivery::shared);
   ASSERT_EQ(distributor.set_visible(client, 0, BlockMask(1, 1), 1), Status::ok);
-  distributor.set_unicast_block_limit(1);  // One region in an update.
+  distributor.set_limit_for_few(1);  // One region in an update.
   world.publish(distributor);
   std::set<std::uint32_t> bricks_there;
   bool cell_there = false;

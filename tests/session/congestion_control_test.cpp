@@ -17,7 +17,7 @@ struct Load {
   double update() {
     const double few = limit == 0 ? wanted : std::min(wanted, limit);
     const double seconds = (for_all + few) * seconds_of_a_block;
-    limit = next_unicast_block_limit(
+    limit = next_limit_for_few(
         limit, {static_cast<std::uint64_t>(for_all + few), static_cast<std::uint64_t>(few), 0},
         seconds, most);
     return seconds;
@@ -53,7 +53,7 @@ TEST(BlocksForFew, AreNotStarvedByLookingForThem) {
   double limit = 1000;
   for (int i = 0; i < 100; ++i) {
     const auto few = static_cast<std::uint64_t>(limit);
-    limit = next_unicast_block_limit(limit, {few, few, examined}, kLooking + kBlock * limit, kMax);
+    limit = next_limit_for_few(limit, {few, few, examined}, kLooking + kBlock * limit, kMax);
   }
   EXPECT_NEAR(limit, 0.15 * kMax / kBlock, 100);
 }
@@ -69,7 +69,7 @@ TEST(BlocksForFew, MayTakeLongerThanAnUpdate) {
     const std::uint64_t few = limit == 0 ? kFirst : left >= 1 ? 1 : 0;
     left -= static_cast<double>(few);
     const double seconds = kRest + kBlock * static_cast<double>(few);
-    limit = next_unicast_block_limit(limit, {few + 1, few, 0}, seconds, kMax);
+    limit = next_limit_for_few(limit, {few + 1, few, 0}, seconds, kMax);
     took += seconds;
     late += seconds > 2 * kMax;
   }
@@ -79,9 +79,9 @@ TEST(BlocksForFew, MayTakeLongerThanAnUpdate) {
 }
 
 TEST(BlocksForFew, HaveNoLimitBeforeAnUpdateTakesTooLong) {
-  EXPECT_EQ(next_unicast_block_limit(0, {100, 100, 0}, 0.1, 0.2), 0);
-  EXPECT_EQ(next_unicast_block_limit(0, {0, 0, 0}, 0.1, 0.2), 0);
-  EXPECT_LT(next_unicast_block_limit(0, {1, 1, 0}, 10, 0.2), 1);  // Not one in each update.
+  EXPECT_EQ(next_limit_for_few(0, {100, 100, 0}, 0.1, 0.2), 0);
+  EXPECT_EQ(next_limit_for_few(0, {0, 0, 0}, 0.1, 0.2), 0);
+  EXPECT_LT(next_limit_for_few(0, {1, 1, 0}, 10, 0.2), 1);  // Not one in each update.
 }
 
 }  // namespace

@@ -233,7 +233,7 @@ TEST_F(ServerTest, UnicastBlocksAreShared) {
   std::vector<Client> clients;
   std::vector<ConnectionId> connections;
   for (int i = 0; i < 3; ++i) connections.push_back(join(clients.emplace_back(make_client())));
-  server_->set_unicast_block_limit(13);
+  server_->set_limit_for_few(13);
   update();
   for (const ConnectionId connection : connections)
     EXPECT_EQ(server_->statistics(connection)->blocks, 4U);
@@ -262,7 +262,7 @@ TEST_F(ServerTest, UnicastBlocksAreTakenInTurns) {
     return of;
   };
   const auto step = [&](std::uint32_t most) {
-    server_->set_unicast_block_limit(most);
+    server_->set_limit_for_few(most);
     now_ += 0.1;
     ASSERT_EQ(server_->update(now_, now_), Status::ok);
     for (std::size_t i = 0; i < connections.size(); ++i) exchange(connections[i], clients[i]);
@@ -292,7 +292,7 @@ TEST_F(ServerTest, WhoLagsHasNoTurn) {
   for (int i = 0; i < 8; ++i) join(silent.emplace_back(make_client()));
   Client client = make_client();
   const ConnectionId honest = join(client);
-  server_->set_unicast_block_limit(1);
+  server_->set_limit_for_few(1);
   const auto blocks_of_updates = [&](std::uint32_t updates) {
     const std::uint64_t before = server_->statistics(honest)->blocks;
     texture_.fill(Fill::noise, random_);
@@ -330,7 +330,7 @@ TEST_F(ServerTest, WhoWantsLittleHasNoMoreTurns) {
     for (std::size_t i = 0; i < connections.size(); ++i) exchange(connections[i], few[i]);
   };
   for (int i = 0; i < 4; ++i) step();  // without a limit
-  server_->set_unicast_block_limit(1);
+  server_->set_limit_for_few(1);
   const std::uint64_t before = server_->statistics(honest)->blocks;
   constexpr int kUpdates = 200;
   for (int i = 0; i < kUpdates; ++i) step();

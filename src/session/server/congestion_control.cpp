@@ -21,13 +21,13 @@ constexpr double kLookAgain = 10;
 
 }  // namespace
 
-double next_unicast_block_limit(double before, const WrittenBlocks& written, double seconds,
-                                double most) noexcept {
+double next_limit_for_few(double before, const WrittenBlocks& written, double seconds,
+                          double most) noexcept {
   constexpr double kMinBlocks = 1.0 / 64, kNoLimit = 1 << 30, kAim = 0.7, kMinStep = 1.0 / 16,
                    kMaxStep = 1.25;
   // Packets for all take what they need, but leave this share of the time to packets for few.
   constexpr double kMinShare = 0.15;
-  const auto few = static_cast<double>(written.unicast);
+  const auto few = static_cast<double>(written.for_few);
   if (before == 0 && (seconds <= most || few == 0)) return 0;
   // Examining blocks takes the same time however few are written.
   constexpr double kLooks = 64;  // blocks examined in the time of writing one

@@ -10,11 +10,11 @@
 
 namespace gicodec {
 
-/// The next limit of blocks in packets for few clients, see Server::set_unicast_block_limit().
+/// The next limit of blocks in packets for few clients, see Server::set_limit_for_few().
 /// `seconds`: how long the last update took; `most`: how long one may take; `before`: the present
 /// limit. A limit of 0 is none.
-[[nodiscard]] double next_unicast_block_limit(double before, const WrittenBlocks& written,
-                                              double seconds, double most) noexcept;
+[[nodiscard]] double next_limit_for_few(double before, const WrittenBlocks& written, double seconds,
+                                        double most) noexcept;
 
 class CongestionControl {
  public:

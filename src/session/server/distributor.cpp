@@ -32,7 +32,7 @@ bool ServedTexture::outdated(const UpdateStream& stream, std::uint32_t block) co
 }
 
 bool Bundle::outdated(std::span<const UpdateStream> streams, std::uint32_t block) const noexcept {
-  const std::uint32_t source = streams[0].source(block);
+  const std::uint32_t source = streams[0].volume_block(block);
   if (std::any_of(textures.begin(), textures.end(),
                   [source](const auto& texture) { return texture->waits(source); })) {
     return false;
@@ -257,20 +257,20 @@ Status Distributor::update() {
 
 const DistributorOptions& Distributor::options() const noexcept { return state_->options; }
 std::uint64_t Distributor::updates() const noexcept { return state_->updates; }
-void Distributor::set_unicast_block_limit(std::uint32_t blocks) noexcept {
-  state_->unicast_block_limit = blocks;
+void Distributor::set_limit_for_few(std::uint32_t blocks) noexcept {
+  state_->limit_for_few = blocks;
 }
 
 WrittenBlocks Distributor::written() const noexcept {
   WrittenBlocks blocks;
   for (const auto& [id, client] : state_->clients) {
-    blocks.unicast += client->written;
+    blocks.for_few += client->written;
     blocks.examined += client->examined;
   }
-  blocks.all = blocks.unicast;
+  blocks.all = blocks.for_few;
   state_->for_each_region([&](const ServedVolume&, const Bundle&, const SharedRegion& region) {
     blocks.all += region.written;
-    blocks.unicast += region.for_few;
+    blocks.for_few += region.written_for_few;
   });
   return blocks;
 }

@@ -93,7 +93,7 @@ class Distributor {
 
   /// Limits the blocks of an update in snapshots and catch-ups of shared streams. One packet is
   /// always made. Clients beyond the limit wait. 0, the default: no limit.
-  void set_unicast_block_limit(std::uint32_t blocks) noexcept;
+  void set_limit_for_few(std::uint32_t blocks) noexcept;
   /// Makes the next packets for all clients and drops those of the last update. After an error
   /// (out_of_memory, or one of the backend) clients that could not be served have no packets and
   /// hold what they held; their blocks stay pending for the next update().

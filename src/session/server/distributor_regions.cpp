@@ -40,7 +40,7 @@ BlockMask missing_of(const SharedRegion& shared, const Lagging* from,
 Status Distributor::State::update_region(ServedVolume& volume, Bundle& bundle, std::uint32_t region,
                                          unsigned thread) {
   SharedRegion& shared = bundle.regions[region];
-  shared.written = shared.for_few = 0;
+  shared.written = shared.written_for_few = 0;
   const auto served = [](const Lagging& lagging) { return lagging.subscribers.allotted; };
   if (shared.up_to_date.served == 0 && !shared.waiting.allotted &&
       std::none_of(shared.lagging.begin(), shared.lagging.end(), served)) {
@@ -86,7 +86,7 @@ std::vector<std::uint32_t> Distributor::State::outdated_blocks(const ServedVolum
                                                                const SharedRegion& shared) const {
   std::vector<std::uint32_t> blocks;
   for (std::uint32_t block = 0; block < shared.streams[0].size(); ++block) {
-    if (!volume.is_active(bundle.group_id, shared.streams[0].source(block))) continue;
+    if (!volume.is_active(bundle.group_id, shared.streams[0].volume_block(block))) continue;
     if (bundle.outdated(shared.streams, block)) blocks.push_back(block);
   }
   return blocks;
@@ -119,7 +119,7 @@ Status Distributor::State::write(const Bundle& bundle, SharedRegion& shared, con
   }
   for (const SharedPacket& packet : packets) {
     shared.written += packet.blocks;
-    if (next == nullptr) shared.for_few += packet.blocks;
+    if (next == nullptr) shared.written_for_few += packet.blocks;
   }
   subscribers.packets = std::move(packets);
   return Status::ok;

@@ -106,7 +106,7 @@ void Distributor::State::allot_catch_ups() noexcept {
   std::size_t regions = 0;
   for_each_region([&](auto&&...) { ++regions; });
   const std::size_t start = spread(updates, regions);
-  std::uint64_t left = unicast_block_limit == 0 ? UINT64_MAX : unicast_block_limit;
+  std::uint64_t left = limit_for_few == 0 ? UINT64_MAX : limit_for_few;
   const auto allot = [&](SubscriberGroup& subscribers, std::uint64_t blocks) {
     if (subscribers.served == 0 || left == 0) return false;
     left -= std::min(left, blocks);
@@ -139,7 +139,7 @@ std::uint32_t Distributor::pending_shared(ClientId client) const noexcept {
                          SharedRegion& shared) {
     const bool all = !is_current(shared, subscriptions);
     for (std::uint32_t block = 0; block < shared.streams[0].size(); ++block) {
-      if (!volume.is_active(bundle.group_id, shared.streams[0].source(block))) continue;
+      if (!volume.is_active(bundle.group_id, shared.streams[0].volume_block(block))) continue;
       if (all || bundle.outdated(shared.streams, block)) ++blocks;
     }
   };

@@ -223,8 +223,8 @@ struct Distributor::State {
   std::map<ClientId, std::unique_ptr<ServedClient>> clients;
   ClientId next_client = 1;
   std::uint64_t updates = 0;
-  std::uint32_t unicast_block_limit = 0;  ///< 0: no limit
-  std::vector<StreamWorker> workers;      ///< by thread
+  std::uint32_t limit_for_few = 0;    ///< 0: no limit
+  std::vector<StreamWorker> workers;  ///< by thread
 };
 
 }  // namespace gicodec

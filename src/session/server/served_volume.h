@@ -46,9 +46,9 @@ struct SharedRegion {
   std::size_t bytes = 0;            ///< of its blocks in all textures
   std::vector<Lagging> lagging;     ///< in the order of their sequences
   std::uint64_t written = 0;        ///< blocks in the packets of the last update
-  std::uint64_t for_few = 0;        ///< of these, in packets for few clients
-  SubscriberGroup up_to_date;       ///< hold the streams' state
-  SubscriberGroup waiting;          ///< hold no known state
+  std::uint64_t written_for_few = 0;  ///< of these, in packets for few clients
+  SubscriberGroup up_to_date;         ///< hold the streams' state
+  SubscriberGroup waiting;            ///< hold no known state
   // Where blocks depend on others:
   /// The first update in which current contents differ from the streams'; 0: they do not differ.
   std::uint32_t changed = 0;

@@ -16,20 +16,17 @@ std::uint64_t whole_bytes(double bytes) noexcept {
 
 }  // namespace
 
-void Server::set_unicast_block_limit(std::uint32_t blocks) noexcept {
-  state_->limit_unicast_blocks(blocks);
-}
+void Server::set_limit_for_few(std::uint32_t blocks) noexcept { state_->set_limit_for_few(blocks); }
 
-void Server::State::limit_unicast_blocks(double blocks) noexcept {
-  unicast_block_limit = blocks;
-  distributor.set_unicast_block_limit(blocks > 0 ? static_cast<std::uint32_t>(std::max(blocks, 1.0))
-                                                 : 0);
+void Server::State::set_limit_for_few(double blocks) noexcept {
+  limit_for_few = blocks;
+  distributor.set_limit_for_few(blocks > 0 ? static_cast<std::uint32_t>(std::max(blocks, 1.0)) : 0);
 }
 
 void Server::report_update_time(double elapsed, double budget) noexcept {
   if (!std::isfinite(elapsed) || !std::isfinite(budget) || budget <= 0) return;
-  state_->limit_unicast_blocks(next_unicast_block_limit(
-      state_->unicast_block_limit, state_->distributor.written(), std::max(elapsed, 0.0), budget));
+  state_->set_limit_for_few(next_limit_for_few(state_->limit_for_few, state_->distributor.written(),
+                                               std::max(elapsed, 0.0), budget));
   // The time of making an update does not count as its delay.
   for (const auto& [id, connection] : state_->connections) {
     if (connection->in_flight.empty() || connection->in_flight.back().made != state_->updated)
@@ -52,8 +49,8 @@ void Server::State::share_unicast_blocks() noexcept {
       block = std::max(block, static_cast<double>(group.textures.size()));
     }
   }
-  const double most = std::max(unicast_block_limit, block);
-  unicast_blocks = std::clamp(unicast_blocks + unicast_block_limit, -most, most);
+  const double most = std::max(limit_for_few, block);
+  unicast_blocks = std::clamp(unicast_blocks + limit_for_few, -most, most);
   const auto unicast_takers =
       static_cast<double>(std::count_if(connections.begin(), connections.end(), takes));
   const double share = std::floor(unicast_blocks / std::max(unicast_takers, 1.0));
@@ -61,7 +58,7 @@ void Server::State::share_unicast_blocks() noexcept {
   for (const auto& [id, connection] : connections) {
     if (connection->session == nullptr) continue;
     Session& session = *connection->session;
-    session.unicast_limited = unicast_block_limit > 0 && session.delivery == Delivery::unicast;
+    session.unicast_limited = limit_for_few > 0 && session.delivery == Delivery::unicast;
     // Without pending blocks a client needs room for one, so that new ones are found.
     const double least = distributor.has_pending(session.client) ? 0 : block;
     session.unicast_blocks = static_cast<std::uint32_t>(std::max(all ? share : 0, least));

@@ -115,7 +115,7 @@ struct Server::State {
   [[nodiscard]] std::vector<DescribedVolume> described_now() const;
   void choose_turn(Connection& connection, double now) noexcept;
   [[nodiscard]] static std::optional<double> oldest_filled(const Connection& connection) noexcept;
-  void limit_unicast_blocks(double blocks) noexcept;
+  void set_limit_for_few(double blocks) noexcept;
   [[nodiscard]] bool fits_rate(Connection& connection, std::uint64_t bytes, double now) noexcept;
   void measure_interval(double now) noexcept;
   void make_room_to_wait() noexcept;
@@ -151,14 +151,14 @@ struct Server::State {
   std::map<ClientId, std::unique_ptr<Session>> sessions;
   std::vector<ServerEvent> events;
   ConnectionId next_connection = 1;
-  double updated = -1;             ///< when the last update was made; negative: never
-  double interval = 0;             ///< seconds between updates, recent mean
-  double takers = 0;               ///< clients with sessions
-  double total_credit = 0;         ///< bytes that all clients together may be sent
-  double mean_bytes = 0;           ///< mean of CongestionControl::bytes()
-  double unicast_block_limit = 0;  ///< 0: no limit
-  double unicast_blocks = 0;       ///< left for unicast packets; below 0: overspent
-  ConnectionId last_turn = 0;      ///< that had the last turn, see share_unicast_blocks()
+  double updated = -1;         ///< when the last update was made; negative: never
+  double interval = 0;         ///< seconds between updates, recent mean
+  double takers = 0;           ///< clients with sessions
+  double total_credit = 0;     ///< bytes that all clients together may be sent
+  double mean_bytes = 0;       ///< mean of CongestionControl::bytes()
+  double limit_for_few = 0;    ///< 0: no limit
+  double unicast_blocks = 0;   ///< left for unicast packets; below 0: overspent
+  ConnectionId last_turn = 0;  ///< that had the last turn, see share_unicast_blocks()
 };
 
 }  // namespace gicodec
