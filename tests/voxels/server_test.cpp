@@ -167,13 +167,13 @@ TEST(VoxelSource, GivesFramesOfItsVolume) {
     ASSERT_EQ(source.remarks.size(), 1U);
     EXPECT_NE(source.remarks[0].find(" of 1.5 m in "), std::string::npos) << source.remarks[0];
     EXPECT_NE(source.remarks[0].find(" of 3 m in "), std::string::npos);
-    const auto textures = volume.textures();
+    const auto textures = textures_of(volume.desc);
     for (const double time : {0.0, 1.0}) {
       const kinds::SourceFrame frame = source.next({time, {}});
       EXPECT_TRUE(frame.remarks.empty());
       ASSERT_EQ(frame.volumes[0].textures.size(), 2U);
       for (std::size_t i = 0; i < 2; ++i) {
-        EXPECT_EQ(frame.volumes[0].textures[i].size(), texture_bytes(textures[i].desc));
+        EXPECT_EQ(frame.volumes[0].textures[i].size(), texture_bytes(textures[i]->desc));
       }
     }
   }

@@ -57,7 +57,8 @@ SourceContainer::SourceContainer(const std::string& path, const Source& source,
       options.texture_backends.push_back(lossy.back().get());
     }
     encoders_.push_back(tools::take(VolumeEncoder::create(volume.desc, options), path));
-    for (const NamedTexture& texture : volume.textures()) sums_.push_back({texture.name, 0});
+    for (const NamedTexture* texture : textures_of(volume.desc))
+      sums_.push_back({texture->name, 0});
   }
 }
 

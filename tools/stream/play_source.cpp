@@ -338,7 +338,7 @@ Source play_source(const std::string& path, const PlayOptions& options) {
     for (std::size_t v = 0; v < player->volumes.size(); ++v) {
       const SourceVolume& volume = player->volumes[v];
       const auto first = texture;
-      texture += static_cast<std::ptrdiff_t>(volume.textures().size());
+      texture += static_cast<std::ptrdiff_t>(textures_of(volume.desc).size());
       const auto& group = volume.desc.groups.front().textures;
       for (std::size_t i = 0; i < group.size() && is_probes(volume); ++i) {
         mark_used(group[i].desc, first[static_cast<std::ptrdiff_t>(i)], (*active)[v]);
