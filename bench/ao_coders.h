@@ -29,11 +29,9 @@ struct UpdateBytes {
 class AoCoders {
  public:
   AoCoders(const VolumeDesc& volume, const std::string& preset) {
-    for (const TextureGroup& set : volume.groups) {
-      for (const NamedTexture& texture : set.textures) {
-        encoders_.push_back(make_encoder(texture.desc, preset));
-        before_.emplace_back(texture_bytes(texture.desc));
-      }
+    for (const NamedTexture* texture : textures_of(volume)) {
+      encoders_.push_back(make_encoder(texture->desc, preset));
+      before_.emplace_back(texture_bytes(texture->desc));
     }
   }
 

@@ -252,7 +252,7 @@ class Run {
   }
 
   static void hold(const VolumeDesc& volume, std::span<const Bytes> textures, PointLight& light) {
-    light.update({volume, {}, held_of(volume, textures)}, 0);
+    light.update({volume, {}, kinds::held_of(volume, textures)}, 0);
   }
 
   const Options& options_;

@@ -1,6 +1,8 @@
 // Backends and presets that are compared, and what they are compared on.
 #pragma once
 
+#include "dumps.h"
+
 #include <gicodec/gicodec.h>
 
 #include <chrono>
@@ -17,12 +19,6 @@ struct Case {
   Isa isa = best_isa();
 };
 [[nodiscard]] std::vector<Case> cases(Isa isa);
-
-struct Texture {
-  std::string name;
-  TextureDesc desc;
-  std::vector<std::vector<std::byte>> frames;
-};
 
 [[nodiscard]] Encoder make_encoder(const TextureDesc& desc, const Case& c, unsigned threads = 1);
 [[nodiscard]] Decoder make_decoder(const TextureDesc& desc, const Case& c, unsigned threads = 1);

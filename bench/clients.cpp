@@ -8,9 +8,9 @@
 // keyframes are through: processor time of the server's update and of one client's decoding, each
 // on one thread, bytes made, bytes sent to one client, and the memory of the server and of one
 // client.
-#include "dump/dump.h"
+#include "dumps.h"
+
 #include "dump/error.h"
-#include "dump/sequence.h"
 
 #include "session/server/distributor.h"
 
@@ -22,7 +22,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <ctime>
 #include <map>
 #include <random>
 #include <set>
@@ -31,24 +30,12 @@
 namespace gicodec::bench {
 namespace {
 
-double processor_time() {
-  timespec t{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
 struct Options {
   std::size_t updates = 5;
   double view = 0.25;
   std::vector<std::size_t> clients{1, 10, 50, 200, 1000};
   Grid region = ServerOptions().region;
   std::string backend = "native", dumps;
-};
-
-struct Texture {
-  std::string name;
-  TextureDesc desc;
-  std::vector<std::vector<std::byte>> frames;
 };
 
 enum class Overlap { same, near, anywhere };
@@ -203,17 +190,7 @@ Options parse(int argc, char** argv) {
 
 int run(int argc, char** argv) {
   const Options o = parse(argc, argv);
-  std::vector<Texture> textures;
-  for (const auto& sequence : tools::group_sequences({o.dumps})) {
-    Texture t;
-    t.name = sequence.name;
-    for (const auto& file : sequence.frames) {
-      auto dump = tools::read_dump(file.path);
-      t.desc = dump.info.desc;
-      t.frames.push_back(std::move(dump.texels));
-    }
-    textures.push_back(std::move(t));
-  }
+  const std::vector<Texture> textures = read_dumps(o.dumps);
   fmt::print("{}: {} updates, every client sees {:.0f} % of {} blocks\n\n", o.dumps, o.updates,
              100 * o.view, block_count(textures[0].desc));
   fmt::print("{:<9} {:>7} {:<7} {:>10} {:>10} {:>10} {:>12} {:>10} {:>12}\n", "views", "clients",

@@ -124,7 +124,7 @@ ddgi::Picture picture_of(const Flags& flags, const ddgi::Scene& scene,
   rays.set_state(scene.state_at(time));
   const VolumeDesc volume = tools::take(irradiance_map_volume(desc), "volume");
   maps::MapLight light(rays, volume);
-  light.update({volume, {}, held_of(volume, textures)}, time);
+  light.update({volume, {}, kinds::held_of(volume, textures)}, time);
   ddgi::ThreadPool pool;
   ddgi::RenderOptions options = picture_options();
   options.samples = 2;

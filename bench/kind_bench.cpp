@@ -88,16 +88,6 @@ Encoder make_encoder(const TextureDesc& desc, const std::string& preset) {
   return tools::take(Encoder::create(desc, options), "encoder");
 }
 
-std::vector<kinds::HeldTexture> held_of(const VolumeDesc& volume, std::span<const Bytes> textures) {
-  std::vector<kinds::HeldTexture> held;
-  for (const TextureGroup& set : volume.groups) {
-    for (const NamedTexture& texture : set.textures) {
-      held.push_back({texture.name, texture.desc, textures[held.size()], {}});
-    }
-  }
-  return held;
-}
-
 ddgi::RenderOptions picture_options(std::uint32_t width, std::uint32_t height) {
   ddgi::RenderOptions options;
   options.width = width;

@@ -62,9 +62,6 @@ void choose(tools::Command& command, Measurement& chosen, const std::shared_ptr<
 /// Of updates only: no keyframes but the first packet. Throws tools::Error.
 [[nodiscard]] Encoder make_encoder(const TextureDesc& desc, const std::string& preset = "");
 
-/// A client's textures that have all been received; refers to both.
-[[nodiscard]] std::vector<kinds::HeldTexture> held_of(const VolumeDesc& volume,
-                                                      std::span<const Bytes> textures);
 /// Options of a picture for a comparison: one ray per pixel.
 [[nodiscard]] ddgi::RenderOptions picture_options(std::uint32_t width = 480,
                                                   std::uint32_t height = 270);

@@ -23,7 +23,6 @@
 #include <cstdio>
 #include <cstring>
 #include <map>
-#include <optional>
 
 namespace gicodec::bench {
 namespace {
@@ -165,7 +164,7 @@ kinds::Feed feed_of(const Case& c, std::vector<std::string> settings) {
   kinds::TraceRequest request;
   request.scene = *ddgi::make_scene(c.scene);
   settings.insert(settings.end(), c.more.begin(), c.more.end());
-  request.settings = kinds::Settings("photons", photons::photon_settings(), settings);
+  request.settings = kinds::Settings("photons", photons::kTracedPhotons.settings, settings);
   return photons::trace(std::move(request));
 }
 
@@ -175,7 +174,7 @@ void print_sizes(const Case& c, const char* form, const std::vector<std::string>
   all.insert(all.end(), {"per-update=0", fmt::format("form={}", form), "max-batches=6"});
   const kinds::Feed feed = feed_of(c, all);
   const auto textures = feed.next({c.start, {}}).volumes[0].textures;
-  const TextureDesc desc = feed.volumes[0].textures()[2].desc;
+  const TextureDesc desc = textures_of(feed.volumes[0].desc)[2]->desc;
   EncoderOptions options;
   auto native = Encoder::create(desc, options);
   if (!native) return;
@@ -299,7 +298,7 @@ void print_table_2(const Case& c, const Options& o) {
     const std::size_t sent_zstd = bytes_of(tools::take(zstd.encode(views), c.scene));
     rays.set_state(scene.state_at(time));
     latency.look(rays.state(), textures[1]);
-    const auto held = held_of(volume.desc, textures);
+    const auto held = kinds::held_of(volume.desc, textures);
     const auto start = Clock::now();
     light->update({volume.desc, volume.geometry, held}, time);
     light->prepare(rays, {scene.camera_at(time), 1280, 720}, pool);

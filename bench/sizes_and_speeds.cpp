@@ -12,9 +12,7 @@
 #include "small_updates.h"
 
 #include "common/command_line.h"
-#include "dump/dump.h"
 #include "dump/error.h"
-#include "dump/sequence.h"
 
 #include "allocation_counter.h"
 
@@ -24,22 +22,13 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <fstream>
 #include <memory>
-#include <numeric>
 #include <optional>
 #include <stdexcept>
 
 namespace gicodec::bench {
 namespace {
-
-/// Of the whole process, so that hidden threads count.
-double processor_time() {
-  timespec t{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 struct Costs {
   double encode = 1e30, decode = 1e30;               ///< best seconds of one update
@@ -123,21 +112,6 @@ void report(const std::string& path, const Texture& t, const Case& c, int rounds
                          {"encoder_bytes", s.encoder_bytes},
                          {"decoder_bytes", s.decoder_bytes}}
        << std::endl;
-}
-
-/// All textures of dumps.
-std::vector<Texture> read_dumps(const std::string& path) {
-  std::vector<Texture> textures;
-  for (const auto& sequence : tools::group_sequences({path})) {
-    Texture& t = textures.emplace_back();
-    t.name = sequence.name;
-    for (const auto& file : sequence.frames) {
-      auto dump = tools::read_dump(file.path);
-      t.desc = dump.info.desc;
-      t.frames.push_back(std::move(dump.texels));
-    }
-  }
-  return textures;
 }
 
 /// All textures of a container whose volumes are not cut into regions.

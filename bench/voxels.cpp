@@ -15,7 +15,6 @@
 
 #include <array>
 #include <cstdio>
-#include <optional>
 
 namespace gicodec::bench {
 namespace {

@@ -8,7 +8,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto rows = test::payload_rows();
   const test::Row& row = rows[input.below(static_cast<std::uint32_t>(rows.size()))];
   test::Generator random(input.u16());
-  const auto textures = static_cast<std::uint32_t>(test::textures_of(row.volume).size());
+  const auto textures = static_cast<std::uint32_t>(textures_of(row.volume).size());
   const auto backends = built_in_backends();
   const auto* backend = backends[input.below(static_cast<std::uint32_t>(backends.size()))];
   switch (input.below(3)) {

@@ -1,4 +1,5 @@
 #include "payload_conformance.h"
+#include "bitstream/description.h"
 #include "messages.h"
 
 #include <map>
@@ -10,17 +11,6 @@ constexpr const Kind* kKinds[] = {&kScenes};
 
 std::uint32_t below(Generator& random, std::uint32_t n) {
   return static_cast<std::uint32_t>(random() % n);
-}
-
-/// The group of a texture, and the id of that group's first texture.
-std::pair<const TextureGroup*, std::size_t> group_of(const VolumeDesc& volume,
-                                                     std::size_t texture) {
-  std::size_t first = 0;
-  for (const TextureGroup& group : volume.groups) {
-    if (texture < first + group.textures.size()) return {&group, first};
-    first += group.textures.size();
-  }
-  return {nullptr, 0};
 }
 
 /// Exactly the bytes: what reads beyond is seen.
@@ -48,18 +38,10 @@ std::vector<std::byte> records_of(const TextureDesc& desc, std::span<const std::
 
 }  // namespace
 
-std::vector<NamedTexture> textures_of(const VolumeDesc& volume) {
-  std::vector<NamedTexture> textures;
-  for (const TextureGroup& group : volume.groups) {
-    textures.insert(textures.end(), group.textures.begin(), group.textures.end());
-  }
-  return textures;
-}
-
 Contents blank(const VolumeDesc& volume) {
   Contents contents;
-  for (const NamedTexture& texture : textures_of(volume)) {
-    contents.emplace_back(static_cast<std::size_t>(texture_bytes(texture.desc)));
+  for (const NamedTexture* texture : textures_of(volume)) {
+    contents.emplace_back(static_cast<std::size_t>(texture_bytes(texture->desc)));
   }
   return contents;
 }
@@ -97,7 +79,7 @@ void change(const VolumeDesc& volume, Contents& contents, Generator& random) {
 
 std::span<const std::byte> presence_of(const VolumeDesc& volume, const Contents& contents,
                                        std::size_t texture) {
-  const auto [group, first] = group_of(volume, texture);
+  const auto [group, first] = group_of(volume, static_cast<std::uint8_t>(texture));
   const TextureDesc& desc = group->textures[texture - first].desc;
   if (desc.presence == Presence::all) return {};
   return contents[first + group->presence];
@@ -130,7 +112,7 @@ std::string check_description(const Row& row) {
 
 std::string check_codec(const VolumeDesc& volume, std::size_t texture, const Backend& backend,
                         Generator& random) {
-  const NamedTexture named = textures_of(volume)[texture];
+  const NamedTexture& named = *textures_of(volume)[texture];
   EncoderOptions options;
   options.backend = backend.name();
   options.backends = {&backend};
@@ -199,8 +181,8 @@ std::string check_volume(const VolumeDesc& volume, const Backend& backend, Gener
       const auto presence = presence_of(volume, contents, t);
       const auto held = decoder->decoder(t)->records();
       if (std::vector<std::byte>(held.begin(), held.end()) !=
-          records_of(textures[t].desc, contents[t], presence)) {
-        return "other records of " + textures[t].name;
+          records_of(textures[t]->desc, contents[t], presence)) {
+        return "other records of " + textures[t]->name;
       }
       if (decoder->read(t, TextureView{shown[t]}, decoder->changed(t)) != Status::ok) {
         return "what changed is not read";
@@ -208,12 +190,12 @@ std::string check_volume(const VolumeDesc& volume, const Backend& backend, Gener
       std::vector<std::byte> whole(shown[t].size()), sent(shown[t].size());
       if (decoder->read(t, TextureView{whole}) != Status::ok ||
           encoder->read(t, TextureView{sent}) != Status::ok || whole != shown[t] || whole != sent) {
-        return "other contents of " + textures[t].name;
+        return "other contents of " + textures[t]->name;
       }
       const auto [group, first] = group_of(volume, t);
-      const auto& first_changed = decoder->changed(static_cast<std::uint8_t>(first));
+      const auto& first_changed = decoder->changed(first);
       if (group->bundled && !std::ranges::equal(decoder->changed(t), first_changed)) {
-        return "blocks of " + textures[t].name + " travel alone";
+        return "blocks of " + textures[t]->name + " travel alone";
       }
     }
   }
@@ -263,9 +245,9 @@ std::string check_container(const Row& row, Generator& random) {
     if (!writer) return "no container";
     for (std::uint64_t frame = 0; frame < 3; ++frame) {
       for (std::size_t t = 0; t < textures.size(); ++t) {
-        const RegionGrid regions = regions_of(textures[t].desc, size);
+        const RegionGrid regions = regions_of(textures[t]->desc, size);
         for (std::uint32_t region = 0; region < regions.regions(); ++region) {
-          const TextureDesc part = region_texture(textures[t].desc, size, region);
+          const TextureDesc part = region_texture(textures[t]->desc, size, region);
           EncoderOptions options;
           options.backend = "lz4";
           options.texture_id = static_cast<std::uint8_t>(t);
@@ -310,12 +292,12 @@ std::string compare(const VolumeDesc& volume, const Contents& contents, const Cl
   for (std::size_t t = 0; t < textures.size(); ++t) {
     const ClientTexture& texture = shown.textures[t];
     const auto presence = presence_of(volume, contents, t);
-    if (records_of(textures[t].desc, texture.texels, presence) !=
-        records_of(textures[t].desc, contents[t], presence)) {
-      return "other contents of " + textures[t].name;
+    if (records_of(textures[t]->desc, texture.texels, presence) !=
+        records_of(textures[t]->desc, contents[t], presence)) {
+      return "other contents of " + textures[t]->name;
     }
     if (std::find(texture.changed.begin(), texture.changed.end(), 0U) != texture.changed.end()) {
-      return "blocks of " + textures[t].name + " never came";
+      return "blocks of " + textures[t]->name + " never came";
     }
   }
   return {};
@@ -338,7 +320,7 @@ std::string check_session(const Row& row, const Backend& backend, Delivery deliv
   auto client = Client::create(client_options);
   const auto textures = textures_of(row.volume);
   if (!server || !client) return "no session";
-  const auto added = server->add_volume("volume", row.volume, {textures[0].desc.grid});
+  const auto added = server->add_volume("volume", row.volume, {textures[0]->desc.grid});
   if (added.status() == Status::unsupported_shape || added.status() == Status::unsupported_format) {
     return "unsupported";
   }

@@ -19,7 +19,6 @@ namespace gicodec::test {
 using Generator = std::mt19937_64;
 using Contents = std::vector<std::vector<std::byte>>;  ///< of all textures of a volume, in memory
 
-[[nodiscard]] std::vector<NamedTexture> textures_of(const VolumeDesc& volume);
 /// Changes some of the contents: a few bytes of some blocks, and what exists of them.
 void change(const VolumeDesc& volume, Contents& contents, Generator& random);
 [[nodiscard]] Contents blank(const VolumeDesc& volume);

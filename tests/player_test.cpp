@@ -32,7 +32,7 @@ Recorded record(const VolumeDesc& volume, Delivery delivery, Generator& random) 
   constexpr Grid kRegion{2, 2, 1};
   auto distributor = *Distributor::create({.backend = "lz4", .region = kRegion});
   const auto textures = textures_of(volume);
-  EXPECT_TRUE(distributor.add_volume(volume, {textures[0].desc.grid}).ok());
+  EXPECT_TRUE(distributor.add_volume(volume, {textures[0]->desc.grid}).ok());
   ClientId client = 0;
   const auto join = [&] {
     client = *distributor.connect(delivery);
@@ -77,12 +77,12 @@ Recorded record(const VolumeDesc& volume, Delivery delivery, Generator& random) 
 /// The player's textures, as a client would show them.
 ClientVolume shown_by(const ContainerPlayer& player, const VolumeDesc& volume) {
   ClientVolume shown;
-  for (const NamedTexture& texture : textures_of(volume)) {
+  for (const NamedTexture* texture : textures_of(volume)) {
     const auto id = static_cast<std::uint8_t>(shown.textures.size());
     ClientTexture& made = shown.textures.emplace_back();
-    made.desc = texture.desc;
-    made.texels.resize(static_cast<std::size_t>(texture_bytes(texture.desc)));
-    made.changed.assign(block_count(texture.desc), 1);
+    made.desc = texture->desc;
+    made.texels.resize(static_cast<std::size_t>(texture_bytes(texture->desc)));
+    made.changed.assign(block_count(texture->desc), 1);
     EXPECT_EQ(player.read(id, TextureView{made.texels}), Status::ok);
   }
   return shown;
@@ -300,7 +300,7 @@ TEST(ContainerPlayer, ViewsLieAsTheyAreTold) {
     const Recorded recorded = record(volume, delivery, random);
     MemorySource source(recorded.bytes);
     auto player = *ContainerPlayer::open(source);
-    const TextureDesc told = textures_of(volume)[0].desc;
+    const TextureDesc told = textures_of(volume)[0]->desc;
     TextureDesc other = told;
     other.layout = told.layout.tiling == Tiling::blocks ? Tiling::atlas_xy_z : Tiling::blocks;
     EXPECT_EQ(player.set_layout(200, other.layout), Status::unknown_texture);
@@ -425,7 +425,7 @@ TEST(ContainerPlayer, SeeksToWhatKeyframesGoBy) {
   auto writer = *ContainerWriter::create(sink, description, kKinds);
   std::vector<Encoder> encoders;
   for (std::uint8_t t = 0; t < textures.size(); ++t) {
-    encoders.push_back(*Encoder::create(textures[t].desc, {.gop = 0, .texture_id = t}));
+    encoders.push_back(*Encoder::create(textures[t]->desc, {.gop = 0, .texture_id = t}));
   }
   Contents contents = blank(volume);
   const std::size_t parts = volume.groups.front().textures.size();
@@ -433,7 +433,7 @@ TEST(ContainerPlayer, SeeksToWhatKeyframesGoBy) {
     change(volume, contents, random);
     if (frame == 2) encoders[0].request_keyframe();
     for (std::size_t t = 0; t < parts; ++t) {
-      if (textures[t].desc.presence != Presence::all) {
+      if (textures[t]->desc.presence != Presence::all) {
         ASSERT_EQ(encoders[t].set_presence(contents[0]), Status::ok);
       }
       const auto packet = encoders[t].encode(ConstTextureView(contents[t]), Selection::all());

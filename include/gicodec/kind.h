@@ -68,6 +68,10 @@ struct VolumeDesc {
   friend bool operator==(const VolumeDesc&, const VolumeDesc&) = default;
 };
 
+/// The textures of a volume in the order of their ids, pointers into it. Throws std::bad_alloc.
+[[nodiscard]] std::vector<const NamedTexture*> textures_of(const VolumeDesc& volume);
+std::vector<const NamedTexture*> textures_of(const VolumeDesc&& volume) = delete;
+
 inline constexpr std::size_t kMaxGroups = 16;
 /// Most bytes of the name of a texture, a volume or a scene.
 inline constexpr std::size_t kMaxName = 255;

@@ -4,8 +4,6 @@
 #include "base/parallel.h"
 #include "native/frame/payload.h"
 
-#include <utility>
-
 namespace gicodec {
 namespace {
 

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <iterator>
 #include <utility>
 
@@ -124,13 +123,10 @@ Status resolve(VolumeEntry& volume, std::span<TextureEntry> textures, const Deco
   auto desc = read_volume_desc(volume.kind, volume.description, layouts, kinds);
   if (!desc) return desc.status();
   auto entry = textures.begin();
-  for (const TextureGroup& group : desc->groups) {
-    for (const NamedTexture& texture : group.textures) {
-      const TextureDesc& own = (entry++)->desc = texture.desc;
-      const TextureDesc largest =
-          volume.region.x == 0 ? own : region_texture(own, volume.region, 0);
-      if (texture_bytes(largest) > limits.max_texture_bytes) return Status::limit_exceeded;
-    }
+  for (const NamedTexture* texture : textures_of(*desc)) {
+    const TextureDesc& own = (entry++)->desc = texture->desc;
+    const TextureDesc largest = volume.region.x == 0 ? own : region_texture(own, volume.region, 0);
+    if (texture_bytes(largest) > limits.max_texture_bytes) return Status::limit_exceeded;
   }
   if (volume.geometry) {
     volume.geometry->grid = desc->groups.front().textures.front().desc.grid;
@@ -211,14 +207,9 @@ Status add_volume(ContainerDescription& description, std::string name, const Vol
     entry.desc = volume;
     entry.first_texture = static_cast<std::uint32_t>(description.textures.size());
     std::vector<TextureEntry> textures;
-    for (const TextureGroup& group : volume.groups) {
-      for (const NamedTexture& named : group.textures) {
-        textures.push_back({named.name,
-                            named.desc,
-                            static_cast<std::uint32_t>(description.volumes.size()),
-                            0,
-                            {}});
-      }
+    const auto place = static_cast<std::uint32_t>(description.volumes.size());
+    for (const NamedTexture* named : textures_of(volume)) {
+      textures.push_back({named->name, named->desc, place, 0, {}});
     }
     entry.textures = static_cast<std::uint32_t>(textures.size());
     description.textures.reserve(description.textures.size() + textures.size());
@@ -296,14 +287,9 @@ std::optional<std::uint8_t> presence_texture(const ContainerDescription& descrip
   const TextureEntry& entry = description.textures[texture];
   if (entry.desc.presence == Presence::all) return std::nullopt;
   const VolumeEntry& volume = description.volumes[entry.volume];
-  std::size_t first = volume.first_texture;
-  for (const TextureGroup& group : volume.desc.groups) {
-    if (texture < first + group.textures.size()) {
-      return static_cast<std::uint8_t>(first + group.presence);
-    }
-    first += group.textures.size();
-  }
-  return std::nullopt;
+  const auto own = static_cast<std::uint8_t>(texture - volume.first_texture);
+  const auto [group, first] = group_of(volume.desc, own);
+  return static_cast<std::uint8_t>(volume.first_texture + first + group->presence);
 }
 
 }  // namespace gicodec

@@ -117,6 +117,16 @@ Result<VolumeDesc> read_volume_desc(std::uint8_t kind, std::span<const std::byte
   return volume;
 }
 
+std::pair<const TextureGroup*, std::uint8_t> group_of(const VolumeDesc& volume,
+                                                      std::uint8_t texture) noexcept {
+  std::uint8_t first = 0;
+  auto group = volume.groups.begin();
+  while (texture - first >= static_cast<int>(group->textures.size())) {
+    first = static_cast<std::uint8_t>(first + group++->textures.size());
+  }
+  return {&*group, first};
+}
+
 std::uint32_t description_hash(const TextureDesc& desc) {
   std::vector<std::byte> bytes;
   ByteWriter writer(bytes);

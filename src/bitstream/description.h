@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace gicodec {
@@ -41,6 +42,10 @@ struct TextureLayout {
                                                   std::span<const std::byte> description,
                                                   std::span<const TextureLayout> layouts,
                                                   std::span<const Kind* const> kinds);
+
+/// The group of a texture, which exists, and the id of that group's first texture.
+[[nodiscard]] std::pair<const TextureGroup*, std::uint8_t> group_of(const VolumeDesc& volume,
+                                                                    std::uint8_t texture) noexcept;
 
 /// The checksum of write_texture()'s bytes, which a keyframe holds as its base.
 [[nodiscard]] std::uint32_t description_hash(const TextureDesc& desc);

@@ -7,7 +7,6 @@
 #include "bitstream/update_message.h"
 
 #include <concepts>
-#include <utility>
 
 namespace gicodec {
 namespace {

@@ -4,6 +4,7 @@
 #include "base/float_bits.h"
 #include "base/guard.h"
 #include "bitstream/description.h"
+#include "kinds/made_volume.h"
 #include "kinds/octahedral_code.h"
 #include "kinds/record_parts.h"
 
@@ -96,14 +97,9 @@ Status write(const VolumeDesc& volume, std::vector<std::byte>& out) {
   const auto slots = [&](std::size_t group) {
     return volume.groups[group].textures.front().desc.grid.x;
   };
-  const auto same = ao_point_volume(slots(0), slots(1), slots(2));
-  if (!same) return same.status();
-  if (!same_but_layout(*same, volume)) return Status::invalid_description;
-  if (const Status status = validate(volume); status != Status::ok) return status;
-  return guarded([&]() -> Status {
-    ByteWriter writer(out);
+  const auto made = ao_point_volume(slots(0), slots(1), slots(2));
+  return write_made(volume, made, out, [&](ByteWriter& writer) {
     for (std::size_t group = 0; group < 3; ++group) writer.varint(slots(group));
-    return Status::ok;
   });
 }
 
@@ -113,9 +109,7 @@ Result<VolumeDesc> read(std::span<const std::byte> description) {
   const auto buckets = static_cast<std::uint32_t>(reader.varint(kMaxBlocks));
   const auto instances = static_cast<std::uint32_t>(reader.varint(kMaxBlocks));
   if (!reader.ok() || !reader.rest().empty()) return Status::corrupt;
-  auto volume = ao_point_volume(cells, buckets, instances);
-  if (!volume && volume.status() != Status::out_of_memory) return Status::corrupt;
-  return volume;
+  return read_made(ao_point_volume(cells, buckets, instances));
 }
 
 constexpr std::int32_t kNormalSteps = 7;  // codes of an axis: -7..7, and -8, which means -7

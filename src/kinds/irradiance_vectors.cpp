@@ -3,6 +3,7 @@
 
 #include "base/guard.h"
 #include "bitstream/description.h"
+#include "kinds/made_volume.h"
 
 namespace gicodec {
 namespace {
@@ -14,15 +15,10 @@ Status write(const VolumeDesc& volume, std::vector<std::byte>& out) {
   }
   const TextureDesc& vectors = volume.groups.front().textures.front().desc;
   const bool floats = vectors.record == colored_direction(true);
-  const auto same = irradiance_vector_volume(vectors.grid, floats);
-  if (!same) return same.status();
-  if (!same_but_layout(*same, volume)) return Status::invalid_description;
-  if (const Status status = validate(volume); status != Status::ok) return status;
-  return guarded([&]() -> Status {
-    ByteWriter writer(out);
+  const auto made = irradiance_vector_volume(vectors.grid, floats);
+  return write_made(volume, made, out, [&](ByteWriter& writer) {
     write_grid(vectors.grid, writer);
     writer.fixed(static_cast<std::uint8_t>(floats ? 1 : 0));
-    return Status::ok;
   });
 }
 
@@ -31,9 +27,7 @@ Result<VolumeDesc> read(std::span<const std::byte> description) {
   const Grid grid = read_grid(reader, kMaxGridSide);
   const auto floats = reader.fixed<std::uint8_t>();
   if (!reader.ok() || !reader.rest().empty() || floats > 1) return Status::corrupt;
-  auto volume = irradiance_vector_volume(grid, floats == 1);
-  if (!volume && volume.status() != Status::out_of_memory) return Status::corrupt;
-  return volume;
+  return read_made(irradiance_vector_volume(grid, floats == 1));
 }
 
 }  // namespace

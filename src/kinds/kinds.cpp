@@ -86,6 +86,14 @@ const Kind* find_kind(std::string_view name, std::span<const Kind* const> others
   return find(others, [name](const Kind& kind) { return kind.name == name; });
 }
 
+std::vector<const NamedTexture*> textures_of(const VolumeDesc& volume) {
+  std::vector<const NamedTexture*> textures;
+  for (const TextureGroup& group : volume.groups) {
+    for (const NamedTexture& texture : group.textures) textures.push_back(&texture);
+  }
+  return textures;
+}
+
 bool same_but_layout(const VolumeDesc& a, const VolumeDesc& b) noexcept {
   return a.kind == b.kind &&
          std::equal(a.groups.begin(), a.groups.end(), b.groups.begin(), b.groups.end(), same_set);

@@ -3,6 +3,7 @@
 
 #include "base/guard.h"
 #include "bitstream/description.h"
+#include "kinds/made_volume.h"
 #include "kinds/record_parts.h"
 #include "quantise/set_order.h"
 
@@ -73,16 +74,11 @@ Status write(const VolumeDesc& volume, std::vector<std::byte>& out) {
   const TextureDesc& photons = volume.groups.front().textures.back().desc;
   const auto form = photon_form(photons.record);
   if (!form) return Status::invalid_description;
-  const auto same = photon_volume(photons.grid.x, record_count(photons.block), *form);
-  if (!same) return same.status();
-  if (!same_but_layout(*same, volume)) return Status::invalid_description;
-  if (const Status status = validate(volume); status != Status::ok) return status;
-  return guarded([&]() -> Status {
-    ByteWriter writer(out);
+  const auto made = photon_volume(photons.grid.x, record_count(photons.block), *form);
+  return write_made(volume, made, out, [&](ByteWriter& writer) {
     writer.varint(photons.grid.x);
     writer.varint(record_count(photons.block));
     writer.fixed(static_cast<std::uint8_t>(*form));
-    return Status::ok;
   });
 }
 
@@ -92,9 +88,7 @@ Result<VolumeDesc> read(std::span<const std::byte> description) {
   const auto capacity = static_cast<std::uint32_t>(reader.varint(kMaxPhotons));
   const auto form = reader.fixed<std::uint8_t>();
   if (!reader.ok() || !reader.rest().empty() || form > 1) return Status::corrupt;
-  auto volume = photon_volume(batches, capacity, static_cast<PhotonForm>(form));
-  if (!volume && volume.status() != Status::out_of_memory) return Status::corrupt;
-  return volume;
+  return read_made(photon_volume(batches, capacity, static_cast<PhotonForm>(form)));
 }
 
 void sort(const TextureDesc& desc, std::span<std::byte> block) {

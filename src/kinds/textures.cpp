@@ -5,7 +5,6 @@
 #include "bitstream/description.h"
 
 #include <algorithm>
-#include <string>
 #include <utility>
 
 namespace gicodec {

@@ -3,6 +3,7 @@
 
 #include "base/guard.h"
 #include "bitstream/description.h"
+#include "kinds/made_volume.h"
 #include "texture/texel.h"
 
 #include <algorithm>
@@ -34,16 +35,11 @@ Status write(const VolumeDesc& volume, std::vector<std::byte>& out) {
   const TextureDesc& light = volume.groups.front().textures.back().desc;
   const auto form = voxel_form(light.record);
   if (!form) return form.status();
-  const auto same = voxel_volume(light.grid.x, light.block.y, *form);
-  if (!same) return same.status();
-  if (!same_but_layout(*same, volume)) return Status::invalid_description;
-  if (const Status status = validate(volume); status != Status::ok) return status;
-  return guarded([&]() -> Status {
-    ByteWriter writer(out);
+  const auto made = voxel_volume(light.grid.x, light.block.y, *form);
+  return write_made(volume, made, out, [&](ByteWriter& writer) {
     writer.varint(light.grid.x);
     writer.fixed(light.block.y);
     writer.fixed(static_cast<std::uint8_t>(*form));
-    return Status::ok;
   });
 }
 
@@ -53,9 +49,7 @@ Result<VolumeDesc> read(std::span<const std::byte> description) {
   const auto side = reader.fixed<std::uint8_t>();
   const auto form = reader.fixed<std::uint8_t>();
   if (!reader.ok() || !reader.rest().empty() || form > 1) return Status::corrupt;
-  auto volume = voxel_volume(bricks, side, static_cast<VoxelForm>(form));
-  if (!volume && volume.status() != Status::out_of_memory) return Status::corrupt;
-  return volume;
+  return read_made(voxel_volume(bricks, side, static_cast<VoxelForm>(form)));
 }
 
 /// Every third bit from bit 0 on.

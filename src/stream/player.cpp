@@ -16,7 +16,7 @@ constexpr std::uint64_t kSmallPacket = std::uint64_t{1} << 20;
 /// Beyond so many regions the reader reads all packets, and the player skips unselected ones.
 constexpr std::uint64_t kMaxSelected = 1U << 16;
 
-std::vector<TextureDecoders::Texture> textures_of(const ContainerDescription& description) {
+std::vector<TextureDecoders::Texture> stored_textures(const ContainerDescription& description) {
   std::vector<TextureDecoders::Texture> textures;
   for (const TextureEntry& entry : description.textures) {
     const auto id = static_cast<std::uint8_t>(textures.size());
@@ -46,7 +46,7 @@ Result<ContainerPlayer> ContainerPlayer::open(Source& source, const PlayerOption
     auto reader = ContainerReader::open(source, limits, options.kinds);
     if (!reader) return reader.status();
     auto decoders = TextureDecoders::create(
-        textures_of(reader->description()),
+        stored_textures(reader->description()),
         {options.limits, options.backends, options.threads, nullptr, options.isa});
     if (!decoders) return decoders.status();
     auto state = std::make_unique<State>(*std::move(reader), *std::move(decoders));

@@ -3,7 +3,6 @@
 
 #include "base/checksum.h"
 
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>

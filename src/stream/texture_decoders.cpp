@@ -1,6 +1,5 @@
 #include "stream/texture_decoders.h"
 
-#include "base/guard.h"
 #include "stream/decoder_memory.h"
 #include "texture/copy_block.h"
 
@@ -173,21 +172,6 @@ Status TextureDecoders::read(std::uint8_t texture, const TextureView& view,
     if (status != Status::ok) return status;
   }
   return Status::ok;
-}
-
-std::vector<TextureDecoders::Texture> textures_of(const VolumeDesc& volume) {
-  std::vector<TextureDecoders::Texture> textures;
-  for (const TextureGroup& group : volume.groups) {
-    const std::size_t first = textures.size();
-    for (const NamedTexture& texture : group.textures) {
-      TextureDecoders::Texture& added = textures.emplace_back();
-      added.desc = texture.desc;
-      if (texture.desc.presence != Presence::all) {
-        added.presence = static_cast<std::uint8_t>(first + group.presence);
-      }
-    }
-  }
-  return textures;
 }
 
 }  // namespace gicodec

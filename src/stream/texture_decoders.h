@@ -96,7 +96,4 @@ class TextureDecoders {
   std::vector<std::vector<std::uint32_t>> changed_;  ///< by texture
 };
 
-/// The textures of a volume, not cut.
-[[nodiscard]] std::vector<TextureDecoders::Texture> textures_of(const VolumeDesc& volume);
-
 }  // namespace gicodec

@@ -7,6 +7,24 @@
 #include <utility>
 
 namespace gicodec {
+namespace {
+
+std::vector<TextureDecoders::Texture> whole_textures(const VolumeDesc& volume) {
+  std::vector<TextureDecoders::Texture> textures;
+  for (const TextureGroup& group : volume.groups) {
+    const std::size_t first = textures.size();
+    for (const NamedTexture& texture : group.textures) {
+      TextureDecoders::Texture& added = textures.emplace_back();
+      added.desc = texture.desc;
+      if (texture.desc.presence != Presence::all) {
+        added.presence = static_cast<std::uint8_t>(first + group.presence);
+      }
+    }
+  }
+  return textures;
+}
+
+}  // namespace
 
 struct VolumeDecoder::State {
   State(const VolumeDesc& desc, TextureDecoders made, std::uint8_t first)
@@ -55,7 +73,7 @@ Result<VolumeDecoder> VolumeDecoder::create(const VolumeDesc& volume,
   return guarded([&]() -> Result<VolumeDecoder> {
     if (const Status status = validate(volume); status != Status::ok) return status;
     auto textures = TextureDecoders::create(
-        textures_of(volume),
+        whole_textures(volume),
         {options.limits, options.backends, options.threads, nullptr, options.isa, options.cancel});
     if (!textures) return textures.status();
     if (options.first_texture + textures->size() - 1 > UINT8_MAX) return Status::invalid_argument;

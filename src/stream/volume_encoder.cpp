@@ -12,7 +12,7 @@ namespace gicodec {
 
 struct VolumeEncoder::State {
   /// The textures of a group.
-  [[nodiscard]] std::span<const std::unique_ptr<TextureEncoder>> textures_of(
+  [[nodiscard]] std::span<const std::unique_ptr<TextureEncoder>> encoders_of(
       std::size_t group) const noexcept {
     std::size_t first = 0;
     for (std::size_t s = 0; s < group; ++s) first += volume.groups[s].textures.size();
@@ -31,7 +31,7 @@ struct VolumeEncoder::State {
 /// Selects blocks of a group's textures. Also sets their presence, and the group's changed blocks.
 Status VolumeEncoder::State::select(std::size_t group, std::span<const ConstTextureView> views,
                                     Selection selection, bool keyframe) {
-  const auto own = textures_of(group);
+  const auto own = encoders_of(group);
   std::vector<std::uint32_t>& all = changed[group];
   std::vector<std::uint32_t> merged;
   for (std::size_t t = 0; t < own.size(); ++t) {
@@ -63,7 +63,7 @@ Status VolumeEncoder::State::encode(std::span<const ConstTextureView> views,
                                     [](const auto& texture) { return texture->keyframe_due(); });
   const CancelUncommitted pending(textures);
   for (std::size_t group = 0; group < volume.groups.size(); ++group) {
-    const auto own = textures_of(group);
+    const auto own = encoders_of(group);
     const Status status = select(group, views.first(own.size()), selections[group], keyframe);
     if (status != Status::ok) return status;
     views = views.subspan(own.size());
@@ -164,7 +164,7 @@ void VolumeEncoder::request_keyframe() noexcept {
 
 Status VolumeEncoder::set_active(std::uint8_t group, std::span<const std::uint8_t> active) {
   if (group >= desc().groups.size()) return Status::unknown_group;
-  const auto own = state_->textures_of(group);
+  const auto own = state_->encoders_of(group);
   if (!active.empty() && active.size() != block_count(own.front()->desc())) {
     return Status::mask_mismatch;
   }

@@ -24,15 +24,7 @@ struct Held {
       : desc(std::move(volume)), textures(std::move(contents)) {}
 
   void give(PointLight& light) const {
-    std::vector<kinds::HeldTexture> held;
-    for (const TextureGroup& group : desc.groups) {
-      for (const NamedTexture& texture : group.textures) {
-        const std::size_t at = held.size();
-        held.push_back({texture.name, texture.desc, textures[at],
-                        received.empty() ? std::span<const std::uint8_t>{} : received[at]});
-      }
-    }
-    light.update({desc, {}, held}, 0);
+    light.update({desc, {}, kinds::held_of(desc, textures, received)}, 0);
   }
 
   VolumeDesc desc;
@@ -183,13 +175,11 @@ RC_GTEST_PROP(PointLight, TakesAnyBytes, ()) {
   const auto volume = *ao_point_volume(9, 4, 3);
   Textures textures;
   const auto raw = rc::gen::arbitrary<std::uint8_t>();
-  for (const TextureGroup& group : volume.groups) {
-    for (const NamedTexture& texture : group.textures) {
-      const auto size = static_cast<std::size_t>(texture_bytes(texture.desc));
-      const auto bytes = *rc::gen::container<std::vector<std::uint8_t>>(size, raw);
-      textures.emplace_back(size);
-      std::memcpy(textures.back().data(), bytes.data(), size);
-    }
+  for (const NamedTexture* texture : textures_of(volume)) {
+    const auto size = static_cast<std::size_t>(texture_bytes(texture->desc));
+    const auto bytes = *rc::gen::container<std::vector<std::uint8_t>>(size, raw);
+    textures.emplace_back(size);
+    std::memcpy(textures.back().data(), bytes.data(), size);
   }
   // Grids that are used: else hardly any bytes mean something.
   for (std::size_t i = 0; i < 3; ++i) {

@@ -214,10 +214,10 @@ TEST(AoSource, GivesFramesOfItsVolumeAndSaysWhatIsLess) {
   for (const double time : {0.0, 1.0}) {
     const kinds::FeedFrame frame = feed.next({time, {Viewpoint{}}});
     const auto& textures = frame.volumes.at(0).textures;
-    const auto named = feed.volumes.front().textures();
+    const auto named = textures_of(feed.volumes.front().desc);
     ASSERT_EQ(textures.size(), named.size());
     for (std::size_t i = 0; i < named.size(); ++i) {
-      EXPECT_EQ(textures[i].size(), texture_bytes(named[i].desc));
+      EXPECT_EQ(textures[i].size(), texture_bytes(named[i]->desc));
     }
     EXPECT_EQ(textures, other.next({time, {}}).volumes.at(0).textures);
   }

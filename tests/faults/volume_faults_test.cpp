@@ -38,7 +38,7 @@ class Scene {
     options.kinds = {&kScenes};
     options.proofs = true;
     server_.emplace(*Server::create(options));
-    const VolumeGeometry geometry{textures_of(volume_)[0].desc.grid};
+    const VolumeGeometry geometry{textures_of(volume_)[0]->desc.grid};
     EXPECT_TRUE(insist([&] { return server_->add_volume("volume", volume_, geometry); }).ok());
   }
 
@@ -135,7 +135,7 @@ TEST(VolumeFaults, LeaveClientsOfRegionsRight) {
 /// be told of it costs a connection.
 TEST(VolumeFaults, VolumesComeWholeOrNotAtAll) {
   const VolumeDesc scene = scene_volume(6);
-  const VolumeGeometry geometry{textures_of(scene)[0].desc.grid};
+  const VolumeGeometry geometry{textures_of(scene)[0]->desc.grid};
   const auto faults = with_every_fault([&](Fault& fault) {
     ServerOptions options;
     options.backend = "raw";

@@ -18,7 +18,7 @@ TEST(HevcConformance, TakesEveryTexture) {
       const auto textures = textures_of(row.volume);
       for (std::size_t texture = 0; texture < textures.size(); ++texture) {
         EXPECT_EQ(check_codec(row.volume, texture, backend, random), "")
-            << row.name << ", " << textures[texture].name;
+            << row.name << ", " << textures[texture]->name;
       }
     }
   }

@@ -47,22 +47,12 @@ struct Held {
       : desc(*irradiance_map_volume(server.desc())), texels(server.textures()) {}
 
   void forget_all() {
-    for (const TextureGroup& group : desc.groups) {
-      for (const NamedTexture& texture : group.textures) {
-        received.emplace_back(block_count(texture.desc), std::uint8_t{0});
-      }
+    for (const NamedTexture* texture : textures_of(desc)) {
+      received.emplace_back(block_count(texture->desc), std::uint8_t{0});
     }
   }
   void show(MapLight& light, double time) const {
-    std::vector<kinds::HeldTexture> held;
-    for (const TextureGroup& group : desc.groups) {
-      for (const NamedTexture& texture : group.textures) {
-        const std::size_t at = held.size();
-        held.push_back({texture.name, texture.desc, texels[at], {}});
-        if (!received.empty()) held.back().received = received[at];
-      }
-    }
-    light.update({desc, geometry, held}, time);
+    light.update({desc, geometry, kinds::held_of(desc, texels, received)}, time);
   }
 };
 

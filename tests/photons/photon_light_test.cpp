@@ -141,7 +141,7 @@ TEST(HeldPhotons, OldBatchesFadeAndExpire) {
   EXPECT_EQ(batches[4].scale, 0);
   EXPECT_EQ(batches[5].scale, 0);
   EXPECT_EQ(batches[0].photons.size(), 1U);
-  held.received = {1, 0, 1, 1, 1, 1};
+  held.received.assign(3, {1, 0, 1, 1, 1, 1});
   held.give(give);
   EXPECT_EQ(photons.batches()[1].scale, 0);
   EXPECT_TRUE(photons.batches()[1].photons.empty());

@@ -45,27 +45,22 @@ inline Scene two_lights() {
 }
 
 inline kinds::Settings settings(const std::vector<std::string>& given) {
-  return {"photons", photon_settings(), given};
+  return {"photons", kTracedPhotons.settings, given};
 }
 
 /// A volume's textures as a client holds them.
 struct Held {
   kinds::FeedVolume volume;
   std::vector<std::vector<std::byte>> texels;
-  std::vector<std::uint8_t> received = {};
+  std::vector<std::vector<std::uint8_t>> received = {};  ///< by texture; empty: all
 
   explicit Held(kinds::FeedVolume volume_in) : volume(std::move(volume_in)) {
-    for (const NamedTexture& texture : volume.textures()) {
-      texels.emplace_back(static_cast<std::size_t>(texture_bytes(texture.desc)));
+    for (const NamedTexture* texture : textures_of(volume.desc)) {
+      texels.emplace_back(static_cast<std::size_t>(texture_bytes(texture->desc)));
     }
   }
   void give(kinds::VolumeLight& light) const {
-    const auto textures = volume.textures();
-    std::vector<kinds::HeldTexture> held;
-    for (std::size_t i = 0; i < texels.size(); ++i) {
-      held.push_back({textures[i].name, textures[i].desc, texels[i], received});
-    }
-    light.update({volume.desc, volume.geometry, held}, 0);
+    light.update({volume.desc, volume.geometry, kinds::held_of(volume.desc, texels, received)}, 0);
   }
 };
 

@@ -37,12 +37,9 @@ inline std::map<std::uint8_t, std::vector<std::uint32_t>> sent_by(
     Distributor& distributor, ClientId client, std::map<StreamId, Decoder>& decoders,
     const VolumeDesc& volume) {
   std::map<std::uint8_t, std::vector<std::uint32_t>> sent;
-  std::vector<TextureDesc> descs;
-  for (const TextureGroup& group : volume.groups) {
-    for (const NamedTexture& one : group.textures) descs.push_back(one.desc);
-  }
+  const auto textures = textures_of(volume);
   for (const OutgoingPacket& packet : distributor.packets(client)) {
-    TextureDesc desc = descs[packet.stream.texture];
+    TextureDesc desc = textures[packet.stream.texture]->desc;
     if (packet.stream.region != StreamId::kWholeVolume) {
       desc = region_texture(desc, distributor.options().region, packet.stream.region);
     }

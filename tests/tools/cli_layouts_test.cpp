@@ -49,9 +49,7 @@ class CliLayouts : public testing::TestWithParam<const EngineLayout*> {
  protected:
   void SetUp() override {
     volume_ = *GetParam()->make(grid_);
-    for (const TextureGroup& group : volume_.groups) {
-      textures_.insert(textures_.end(), group.textures.begin(), group.textures.end());
-    }
+    for (const NamedTexture* texture : textures_of(volume_)) textures_.push_back(*texture);
   }
 
   /// A command that is told of the layout.

@@ -252,9 +252,8 @@ TEST_F(CliTextureFiles, StatesOfProbesAreKept) {
 
 TEST_F(CliTextureFiles, MaxErrorIsForLight) {
   const auto volume = unity_apv_volume(2);
-  for (const TextureGroup& group : volume->groups) {
-    for (const NamedTexture& texture : group.textures)
-      write(texture.name, "ktx2", texture.desc, {}, 1);
+  for (const NamedTexture* texture : textures_of(*volume)) {
+    write(texture->name, "ktx2", texture->desc, {}, 1);
   }
   const Outcome encoded = program_.succeed({"encode", "-o", "x.gic", "--layout", "unity-apv",
                                             "--grid", "2x1x1", "--max-error", "2", "in"});

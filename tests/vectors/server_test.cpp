@@ -267,7 +267,7 @@ TEST(VectorSource, GivesFramesOfItsVolume) {
     for (const double time : {0.0, 1.0}) {
       const auto textures = feed.next({time, {}}).volumes.at(0).textures;
       ASSERT_EQ(textures.size(), 1U);
-      EXPECT_EQ(textures[0].size(), texture_bytes(volume.textures()[0].desc));
+      EXPECT_EQ(textures[0].size(), texture_bytes(textures_of(volume.desc)[0]->desc));
       EXPECT_EQ(textures, other.next({time, {}}).volumes.at(0).textures);
     }
   }

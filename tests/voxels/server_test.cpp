@@ -167,13 +167,13 @@ TEST(VoxelSource, GivesFramesOfItsVolume) {
     ASSERT_EQ(feed.remarks.size(), 1U);
     EXPECT_NE(feed.remarks[0].find(" of 1.5 m in "), std::string::npos) << feed.remarks[0];
     EXPECT_NE(feed.remarks[0].find(" of 3 m in "), std::string::npos);
-    const auto textures = volume.textures();
+    const auto textures = textures_of(volume.desc);
     for (const double time : {0.0, 1.0}) {
       const kinds::FeedFrame frame = feed.next({time, {}});
       EXPECT_TRUE(frame.remarks.empty());
       ASSERT_EQ(frame.volumes[0].textures.size(), 2U);
       for (std::size_t i = 0; i < 2; ++i) {
-        EXPECT_EQ(frame.volumes[0].textures[i].size(), texture_bytes(textures[i].desc));
+        EXPECT_EQ(frame.volumes[0].textures[i].size(), texture_bytes(textures[i]->desc));
       }
     }
   }

@@ -52,10 +52,8 @@ void add_isa(Command& command, Isa& isa) {
   const std::function<void(const std::string&)> set = [&isa](const std::string& name) {
     const std::optional<Isa> found = isa_from_string(name);
     if (!found || !is_supported(*found)) {
-      std::string names;
-      for (const Isa supported : supported_isas())
-        names += (names.empty() ? "" : ", ") + std::string(to_string(supported));
-      fail(Exit::usage, "--isa: \"{}\" is none of {}, which this machine has", name, names);
+      fail(Exit::usage, "--isa: \"{}\" is none of {}, which this machine has", name,
+           listed(supported_isas(), [](Isa one) { return to_string(one); }));
     }
     isa = *found;
   };

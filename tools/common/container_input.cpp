@@ -6,6 +6,8 @@
 #include "file_names.h"
 #include "volume_words.h"
 
+#include <gicodec/probes.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
@@ -221,11 +223,9 @@ void ContainerInput::describe_cut() {
       fmt::format("{}: it holds frames {}-{}{}", kNoEnd, *first_frame_, *last_frame_, planned);
   const auto wanted = std::count(selected_.begin(), selected_.end(), true);
   if (last_textures_.size() == static_cast<std::size_t>(wanted)) return;
-  std::string found;
-  for (const std::uint8_t id : last_textures_) {
-    found += (found.empty() ? "" : ", ") + textures_[id].name;
-  }
-  missing_ += fmt::format(", and of frame {} only {}", *last_frame_, found);
+  missing_ +=
+      fmt::format(", and of frame {} only {}", *last_frame_,
+                  listed(last_textures_, [&](std::uint8_t id) { return textures_[id].name; }));
 }
 
 std::string ContainerInput::frames_there() {
@@ -295,7 +295,9 @@ std::string recovery(const ContainerInput& input) {
     if (++dumps > 1) continue;
     flags = fmt::format(" --volume {}", volume_name(input.description(), volume));
   }
-  const bool drawn = std::ranges::any_of(input.description().volumes, is_drawn_alone);
+  const bool drawn = std::ranges::any_of(
+      input.description().volumes,
+      [](const VolumeEntry& volume) { return volume.kind != kKindProbes && is_drawn(volume); });
   if (dumps == 0 && drawn) {
     return fmt::format("\"gi-render --stream {}{}\" draws what comes before", input.argument(),
                        input.cut_off() ? " --allow-incomplete" : "");

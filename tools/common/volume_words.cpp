@@ -2,12 +2,7 @@
 
 #include "dump/error.h"
 
-#include <gicodec/ao_points.h>
-#include <gicodec/irradiance_maps.h>
-#include <gicodec/irradiance_vectors.h>
-#include <gicodec/photons.h>
-#include <gicodec/probes.h>
-#include <gicodec/voxels.h>
+#include <gicodec/textures.h>
 
 #include <algorithm>
 #include <array>
@@ -67,10 +62,8 @@ std::string kind_text(std::uint8_t kind) {
   return known == nullptr ? fmt::format("unknown kind {}", kind) : std::string(known->name);
 }
 
-bool is_drawn_alone(const VolumeEntry& volume) noexcept {
-  constexpr std::array kDrawn{kKindIrradianceVectors, kKindIrradianceMaps, kKindPhotons,
-                              kKindAoPoints, kKindVoxels};
-  return std::ranges::find(kDrawn, volume.kind) != kDrawn.end();
+bool is_drawn(const VolumeEntry& volume) noexcept {
+  return volume.kind != kKindTextures && find_kind(volume.kind) != nullptr;
 }
 
 std::string unknown_kind(const ContainerDescription& description, std::size_t volume) {

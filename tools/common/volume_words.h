@@ -22,8 +22,8 @@ namespace gicodec::tools {
 [[nodiscard]] std::string kind_text(std::uint8_t kind);
 /// "volume near is of kind 77, which this program does not know"; empty if it knows the kind.
 [[nodiscard]] std::string unknown_kind(const ContainerDescription& description, std::size_t volume);
-/// True if gi-render draws the volume and it is not of kind probes.
-[[nodiscard]] bool is_drawn_alone(const VolumeEntry& volume) noexcept;
+/// True if gi-render draws volumes of this kind: all that the library knows but plain textures.
+[[nodiscard]] bool is_drawn(const VolumeEntry& volume) noexcept;
 /// Why a texture cannot become a dump, with its volume and a hint; empty if it can.
 [[nodiscard]] std::string no_dump(const ContainerDescription& description,
                                   const TextureEntry& texture);

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 
 namespace gicodec::ddgi {
 namespace {
@@ -241,11 +240,8 @@ EngineTextures::EngineTextures(const EngineLayout& layout, Grid probes)
       probes_(probes),
       volume_(tools::take(layout.make(layout_grid(layout, probes)),
                           "--layout " + std::string(layout.name))) {
-  for (const TextureGroup& group : volume_.groups) {
-    for (const NamedTexture& texture : group.textures) {
-      textures_.push_back(
-          {texture.name, texture.desc, std::vector<std::byte>(texture_bytes(texture.desc))});
-    }
+  for (const NamedTexture* one : textures_of(volume_)) {
+    textures_.push_back({one->name, one->desc, std::vector<std::byte>(texture_bytes(one->desc))});
   }
 }
 

@@ -9,7 +9,6 @@
 
 #include <bit>
 #include <limits>
-#include <sstream>
 
 namespace gicodec::ddgi {
 namespace {

@@ -13,7 +13,6 @@
 #include <charconv>
 #include <cstring>
 #include <memory>
-#include <sstream>
 #include <stdexcept>
 
 namespace gicodec::tools {

@@ -185,16 +185,10 @@ class Resolver {
          "{}: no attribute {}, and its channels {} do not determine the format; use --vk-format, "
          "and "
          "where the channels have other names than R, G, B, A, {}",
-         path_, kFormat, list(found), mapping_for(found, names == "GR" ? "RG" : "RGB"));
+         path_, kFormat, listed(found, &FoundChannel::name),
+         mapping_for(found, names == "GR" ? "RG" : "RGB"));
   }
 
-  static std::string list(const std::vector<FoundChannel>& found) {
-    std::string names;
-    for (const FoundChannel& channel : found) {
-      names += (names.empty() ? "" : ", ") + channel.name;
-    }
-    return names;
-  }
   /// "--channels R=irr.R,G=irr.G", a suggestion from the file's channel names.
   static std::string mapping_for(const std::vector<FoundChannel>& found, std::string_view letters) {
     std::string text;
@@ -237,7 +231,7 @@ class Resolver {
       });
       if (at == unused.end() && !hints_.channels.empty() && !wanted.empty()) {
         fail(Exit::bad_input, "{}: has no channel {} for {}; its channels are {}", path_, wanted,
-             letter(component), list(found));
+             letter(component), listed(found, &FoundChannel::name));
       }
       if (at == unused.end()) {
         if (letter(component) != 'A') {
@@ -246,7 +240,8 @@ class Resolver {
             if (letter(each) != 'A' && has_channel(info_.channels, each)) letters += letter(each);
           }
           fail(Exit::bad_input, "{}: channel {} of {} is missing; its channels are {}: use {}",
-               path_, letter(component), format.name, list(found), mapping_for(found, letters));
+               path_, letter(component), format.name, listed(found, &FoundChannel::name),
+               mapping_for(found, letters));
         }
         info_.channels.alpha = false;
         continue;

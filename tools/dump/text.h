@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <cstdio>
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -25,6 +26,14 @@ namespace gicodec::tools {
 
 /// Text with ASCII letters in lower case.
 [[nodiscard]] std::string lower_case(std::string text);
+
+/// "a, b, c": what `text_of` gives of each.
+template <typename Range, typename TextOf>
+[[nodiscard]] std::string listed(const Range& range, const TextOf& text_of) {
+  std::string list;
+  for (const auto& one : range) (list += list.empty() ? "" : ", ") += std::invoke(text_of, one);
+  return list;
+}
 
 /// Writes text unchanged. output_error() keeps the reason of the first failure on standard output.
 void write_text(std::FILE* stream, std::string_view text);

@@ -27,24 +27,20 @@ std::vector<Input> by_layout(const GeometryFlags& flags, const VolumeDesc& volum
   // Reports files that the layout does not have before missing ones.
   for (const Sequence& sequence : sequences) (void)hints_for(flags, sequence.name);
   std::vector<Input> all;
-  for (const TextureGroup& group : volume.groups) {
-    for (const NamedTexture& texture : group.textures) {
-      const auto found = std::ranges::find(sequences, texture.name, &Sequence::name);
-      if (found == sequences.end()) {
-        fail(Exit::usage, "--layout {} has textures {}, and there are no files of {}", flags.layout,
-             texture_names(volume), texture.name);
-      }
-      all.emplace_back(&*found, inspect(*found, hints_for(flags, found->name)));
+  for (const NamedTexture* texture : textures_of(volume)) {
+    const auto found = std::ranges::find(sequences, texture->name, &Sequence::name);
+    if (found == sequences.end()) {
+      fail(Exit::usage, "--layout {} has textures {}, and there are no files of {}", flags.layout,
+           texture_names(volume), texture->name);
     }
+    all.emplace_back(&*found, inspect(*found, hints_for(flags, found->name)));
   }
   return all;
 }
 
 std::set<std::string> names_of(const VolumeDesc& volume) {
   std::set<std::string> names;
-  for (const TextureGroup& group : volume.groups) {
-    for (const NamedTexture& texture : group.textures) names.insert(texture.name);
-  }
+  for (const NamedTexture* texture : textures_of(volume)) names.insert(texture->name);
   return names;
 }
 

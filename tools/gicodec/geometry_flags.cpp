@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -25,13 +24,7 @@ std::string tilings() {
   return names;
 }
 
-std::string format_names() {
-  std::string names;
-  for (const FormatInfo& format : formats()) {
-    names += (names.empty() ? "" : ", ") + std::string(format.name);
-  }
-  return names;
-}
+std::string format_names() { return listed(formats(), &FormatInfo::name); }
 
 std::optional<std::uint16_t> parse_number(std::string_view text) {
   std::uint16_t value = 0;
@@ -91,13 +84,7 @@ std::map<char, std::string> channels_for(const GeometryFlags& flags, const std::
 constexpr std::array<const char*, 5> kUnits = {"probes", "bricks", "cells", "voxels",
                                                "texels and layers"};
 
-std::string layout_names() {
-  std::string names;
-  for (const EngineLayout& layout : engine_layouts()) {
-    names += (names.empty() ? "" : ", ") + std::string(layout.name);
-  }
-  return names;
-}
+std::string layout_names() { return listed(engine_layouts(), &EngineLayout::name); }
 
 const char* unit_of(const EngineLayout& layout) {
   return kUnits[static_cast<std::size_t>(layout.unit)];
@@ -140,10 +127,8 @@ Grid required_grid(const GeometryFlags& flags, const EngineLayout& layout) {
 }
 
 std::optional<TextureDesc> texture_of(const VolumeDesc& volume, const std::string& name) {
-  for (const TextureGroup& group : volume.groups) {
-    for (const NamedTexture& texture : group.textures) {
-      if (texture.name == name) return texture.desc;
-    }
+  for (const NamedTexture* texture : textures_of(volume)) {
+    if (texture->name == name) return texture->desc;
   }
   return std::nullopt;
 }
@@ -209,13 +194,7 @@ std::optional<VolumeDesc> layout_volume(const GeometryFlags& flags) {
 }
 
 std::string texture_names(const VolumeDesc& volume) {
-  std::string names;
-  for (const TextureGroup& group : volume.groups) {
-    for (const NamedTexture& texture : group.textures) {
-      names += (names.empty() ? "" : ", ") + texture.name;
-    }
-  }
-  return names;
+  return listed(textures_of(volume), &NamedTexture::name);
 }
 
 Hints hints_for(const GeometryFlags& flags, const std::string& texture) {

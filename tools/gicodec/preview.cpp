@@ -11,7 +11,6 @@
 #include "dump/text.h"
 #include "geometry_flags.h"
 
-#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -65,16 +64,11 @@ void check_picture_name(const std::string& path) {
 std::pair<bool, std::uint64_t> preview_rank(const ContainerDescription& description,
                                             std::size_t texture) {
   const VolumeEntry& volume = description.volumes[description.textures[texture].volume];
-  std::size_t place = texture - volume.first_texture;
-  for (const TextureGroup& group : volume.desc.groups) {
-    if (place < group.textures.size()) {
-      const NamedTexture& named = group.textures[place];
-      if (named.preview != Preview::none) return {true, 0};  // so the first of these wins
-      return {false, block_bytes(named.desc)};
-    }
-    place -= group.textures.size();
-  }
-  return {};
+  const std::size_t place = texture - volume.first_texture;
+  const auto textures = textures_of(volume.desc);
+  if (place >= textures.size()) return {};
+  if (textures[place]->preview != Preview::none) return {true, 0};  // so the first of these wins
+  return {false, block_bytes(textures[place]->desc)};
 }
 
 /// The texture to draw: of those that match the flags the most informative one, in the first volume

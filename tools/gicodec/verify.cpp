@@ -18,8 +18,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <memory>
-#include <mutex>
-#include <optional>
 #include <set>
 #include <utility>
 

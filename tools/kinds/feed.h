@@ -7,7 +7,6 @@
 #include <gicodec/probes.h>
 #include <gicodec/protocol.h>
 #include <gicodec/volume.h>
-#include <gicodec/voxels.h>
 
 #include <chrono>
 #include <cstddef>
@@ -28,15 +27,6 @@ struct FeedVolume {
   std::vector<int> quantisers = {};
   /// By texture, the attributes of dumps besides scene and time; or empty.
   std::vector<tools::DumpInfo> files = {};
-
-  /// The textures of all groups.
-  [[nodiscard]] std::vector<NamedTexture> textures() const {
-    std::vector<NamedTexture> all;
-    for (const TextureGroup& group : desc.groups) {
-      all.insert(all.end(), group.textures.begin(), group.textures.end());
-    }
-    return all;
-  }
 };
 
 [[nodiscard]] inline bool is_probes(const FeedVolume& volume) {

@@ -15,14 +15,6 @@ namespace {
 using tools::Exit;
 using tools::fail;
 
-std::string names_of(std::span<const Setting> known) {
-  std::string names;
-  for (const Setting& setting : known) {
-    names += (names.empty() ? "" : ", ") + std::string(setting.name);
-  }
-  return names.empty() ? "none" : names;
-}
-
 }  // namespace
 
 Settings::Settings(std::string_view kind, std::span<const Setting> known,
@@ -36,7 +28,7 @@ Settings::Settings(std::string_view kind, std::span<const Setting> known,
     const auto found = values_.find(std::string_view(text).substr(0, equals));
     if (found == values_.end())
       fail(Exit::usage, "--set: {} have no setting \"{}\"; there are: {}", kind,
-           text.substr(0, equals), names_of(known));
+           text.substr(0, equals), known.empty() ? "none" : tools::listed(known, &Setting::name));
     found->second = text.substr(equals + 1);
   }
 }

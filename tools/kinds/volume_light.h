@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <vector>
 
 namespace gicodec::kinds {
 
@@ -26,6 +27,12 @@ struct HeldTexture {
     return received.empty() || received[block] != 0;
   }
 };
+
+/// All textures of a volume by their texels, and by what was received of each, or all of all;
+/// refers to these.
+[[nodiscard]] std::vector<HeldTexture> held_of(
+    const VolumeDesc& volume, std::span<const std::vector<std::byte>> texels,
+    std::span<const std::vector<std::uint8_t>> received = {});
 
 struct HeldVolume {
   const VolumeDesc& desc;

@@ -1,7 +1,5 @@
 #include "blend_slots.h"
 
-#include <algorithm>
-
 namespace gicodec::maps {
 namespace {
 

@@ -2,8 +2,6 @@
 
 #include "dump/error.h"
 
-#include <algorithm>
-
 namespace gicodec::maps {
 
 MapServer::MapServer(const ddgi::Scene& scene, const MapOptions& options, unsigned threads,

@@ -105,8 +105,6 @@ constinit const kinds::TracedKind kTracedPhotons{
     // Of a photon 40 bytes unpacked and 16 in the picture.
     [](const VolumeDesc&, std::uint64_t textures) { return 4 * textures; }};
 
-std::span<const kinds::Setting> photon_settings() { return kSettings; }
-
 kinds::Feed trace(kinds::TraceRequest request) {
   const auto tracer = std::make_shared<Tracer>(std::move(request));
   kinds::Feed feed =

@@ -9,8 +9,6 @@ namespace gicodec::photons {
 
 extern const kinds::TracedKind kTracedPhotons;
 
-[[nodiscard]] std::span<const kinds::Setting> photon_settings();
-
 /// TracedKind::trace and TracedKind::light.
 [[nodiscard]] kinds::Feed trace(kinds::TraceRequest request);
 [[nodiscard]] std::unique_ptr<kinds::VolumeLight> light(const ddgi::RayScene& scene,

@@ -6,7 +6,6 @@
 
 #include <gicodec/probes.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <utility>

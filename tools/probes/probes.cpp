@@ -104,10 +104,8 @@ const EngineLayout* layout_of(const kinds::Settings& settings) {
   if (name == "none") return nullptr;
   const EngineLayout* const layout = find_engine_layout(name);
   if (layout == nullptr) {
-    std::string names;
-    for (const EngineLayout& known : engine_layouts())
-      names += (names.empty() ? "" : ", ") + std::string(known.name);
-    fail(Exit::usage, "--layout: {} is not known; there are {}", name, names);
+    fail(Exit::usage, "--layout: {} is not known; there are {}", name,
+         tools::listed(engine_layouts(), &EngineLayout::name));
   }
   const bool others = settings.text("vk-format") != "paper" || settings.text("core") != "paper" ||
                       settings.text("sh") != "none" || settings.text("fine") != "none";

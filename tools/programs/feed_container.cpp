@@ -56,7 +56,8 @@ FeedContainer::FeedContainer(const std::string& path, const Feed& feed, const Fr
       options.texture_backends.push_back(lossy.back().get());
     }
     encoders_.push_back(tools::take(VolumeEncoder::create(volume.desc, options), path));
-    for (const NamedTexture& texture : volume.textures()) sums_.push_back({texture.name, 0});
+    for (const NamedTexture* texture : textures_of(volume.desc))
+      sums_.push_back({texture->name, 0});
   }
 }
 

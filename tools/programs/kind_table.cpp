@@ -25,9 +25,7 @@ std::unique_ptr<VolumeLight> make_light(const TracedKind& kind, const ddgi::RayS
                                         const VolumeDesc& desc, const DrawingFlags& flags) {
   const Settings drawing(kind.name, kind.drawing, flags.set);
   std::uint64_t textures = 0;
-  for (const TextureGroup& group : desc.groups) {
-    for (const NamedTexture& texture : group.textures) textures += texture_bytes(texture.desc);
-  }
+  for (const NamedTexture* texture : textures_of(desc)) textures += texture_bytes(texture->desc);
   const std::uint64_t wanted = ((textures + kind.light_memory(desc, textures)) >> 20) + 1;
   if (wanted > flags.memory) {
     tools::fail(tools::Exit::bad_input,
@@ -38,8 +36,7 @@ std::unique_ptr<VolumeLight> make_light(const TracedKind& kind, const ddgi::RayS
 }
 
 bool is_culled(const FeedVolume& volume) {
-  const Kind* const kind = find_kind(volume.desc.kind);
-  const TracedKind* const traced = kind == nullptr ? nullptr : find_traced_kind(kind->name);
+  const TracedKind* const traced = find_traced_kind(volume.desc.kind);
   return traced != nullptr && traced->culled;
 }
 
@@ -47,6 +44,11 @@ const TracedKind* find_traced_kind(std::string_view name) {
   const auto kinds = traced_kinds();
   const auto found = std::ranges::find(kinds, name, &TracedKind::name);
   return found == kinds.end() ? nullptr : &*found;
+}
+
+const TracedKind* find_traced_kind(std::uint8_t kind) {
+  const Kind* const known = find_kind(kind);
+  return known == nullptr ? nullptr : find_traced_kind(known->name);
 }
 
 }  // namespace gicodec::kinds

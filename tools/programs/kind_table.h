@@ -27,7 +27,8 @@ struct DrawingFlags {
 [[nodiscard]] std::span<const TracedKind> traced_kinds();
 /// True if viewers need only some of the volume's blocks.
 [[nodiscard]] bool is_culled(const FeedVolume& volume);
-/// nullptr for an unknown name.
+/// By name or by Kind::id; nullptr for a kind that is not traced.
 [[nodiscard]] const TracedKind* find_traced_kind(std::string_view name);
+[[nodiscard]] const TracedKind* find_traced_kind(std::uint8_t kind);
 
 }  // namespace gicodec::kinds

@@ -19,11 +19,6 @@ namespace {
 using tools::Exit;
 using tools::fail;
 
-const TracedKind* traced(const VolumeEntry& entry) {
-  const Kind* const kind = find_kind(entry.kind);
-  return kind == nullptr ? nullptr : find_traced_kind(kind->name);
-}
-
 /// The reason why a volume cannot be drawn.
 std::string why_not(const ContainerDescription& description, std::size_t volume) {
   const std::string unknown = tools::unknown_kind(description, volume);
@@ -58,12 +53,12 @@ StoredVolume::StoredVolume(const std::string& path, bool allow_incomplete,
   path_ = input_->path();
   missing_ = require_complete(*input_, allow_incomplete);
   const auto& volumes = input_->description().volumes;
-  const auto found = std::ranges::find_if(volumes, traced);
+  const auto found = std::ranges::find_if(volumes, tools::is_drawn);
   if (found == volumes.end()) {
     fail(Exit::bad_input, "{}: nothing can be drawn: {}", path_,
          volumes.empty() ? "it holds no volume" : why_not(input_->description(), 0));
   }
-  kind_ = traced(*found);
+  kind_ = find_traced_kind(found->kind);
   desc_ = found->desc;
   geometry_ = found->geometry;
   first_ = found->first_texture;
@@ -158,17 +153,14 @@ void StoredVolume::follow() {
 }
 
 void StoredVolume::update(std::uint64_t frame, VolumeLight& light) const {
-  std::vector<HeldTexture> held;
+  std::vector<HeldTexture> held = held_of(desc_, texels_);
   std::vector<tools::DumpInfo> infos = files_;
   for (std::size_t i = 0; input_ && i < texels_.size(); ++i) {
     infos.push_back(input_->textures()[first_ + i].info_at(frame));
   }
-  for (const TextureGroup& group : desc_.groups) {
-    for (const NamedTexture& texture : group.textures) {
-      const std::size_t i = held.size();
-      held.push_back({texture.name, infos[i].desc, texels_[i], {}});
-      held.back().encoding = encoding_in(infos[i].attributes);
-    }
+  for (std::size_t i = 0; i < held.size(); ++i) {
+    held[i].desc = infos[i].desc;
+    held[i].encoding = encoding_in(infos[i].attributes);
   }
   const VolumeGeometry geometry = geometry_.value_or(VolumeGeometry{});
   try {

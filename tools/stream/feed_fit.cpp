@@ -16,8 +16,8 @@ void check_backend(const ServerFlags& o, const FeedVolume& volume) {
   const auto all = built_in_backends();
   const auto backend = std::ranges::find(all, o.backend, &Backend::name);
   if (backend == all.end()) return;
-  for (const NamedTexture& texture : volume.textures()) {
-    const Status status = (*backend)->make_encoder(texture.desc, o.server.settings).status();
+  for (const NamedTexture* texture : textures_of(volume.desc)) {
+    const Status status = (*backend)->make_encoder(texture->desc, o.server.settings).status();
     if (status == Status::invalid_settings) {
       fail(Exit::usage,
            "backend {} refuses{}: native takes --preset fast or strong and --chunk up to 4096, lz4 "

@@ -339,7 +339,7 @@ Feed play_feed(const std::string& path, const PlayOptions& options) {
     for (std::size_t v = 0; v < player->volumes.size(); ++v) {
       const FeedVolume& volume = player->volumes[v];
       const auto first = texture;
-      texture += static_cast<std::ptrdiff_t>(volume.textures().size());
+      texture += static_cast<std::ptrdiff_t>(textures_of(volume.desc).size());
       const auto& group = volume.desc.groups.front().textures;
       for (std::size_t i = 0; i < group.size() && is_probes(volume); ++i) {
         mark_used(group[i].desc, first[static_cast<std::ptrdiff_t>(i)], (*active)[v]);

@@ -21,7 +21,6 @@
 #include <map>
 #include <queue>
 #include <random>
-#include <span>
 #include <utility>
 #include <vector>
 

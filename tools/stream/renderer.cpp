@@ -79,9 +79,7 @@ double Renderer::draw_scene(const ClientFrame& frame, const ddgi::Camera& camera
 
 void Renderer::prepare_light(const ClientVolume& volume) {
   if (light_ && instance_ == volume.instance) return;
-  const Kind* const kind = find_kind(volume.desc.kind);
-  const kinds::TracedKind* const row =
-      kind == nullptr ? nullptr : kinds::find_traced_kind(kind->name);
+  const kinds::TracedKind* const row = kinds::find_traced_kind(volume.desc.kind);
   if (row == nullptr) {
     fail(Exit::bad_input,
          "volume {}: is of a kind that cannot be drawn with a scene; without --scene its "

@@ -64,8 +64,8 @@ void check_memory(const ServerFlags& o, const kinds::Feed& feed) {
   constexpr std::uint64_t kCopies = 3, kBlock = 256;
   std::uint64_t bytes = 0;
   for (const FeedVolume& volume : feed.volumes) {
-    for (const NamedTexture& texture : volume.textures()) {
-      bytes += kCopies * texture_bytes(texture.desc) + kBlock * block_count(texture.desc);
+    for (const NamedTexture* texture : textures_of(volume.desc)) {
+      bytes += kCopies * texture_bytes(texture->desc) + kBlock * block_count(texture->desc);
     }
   }
   const std::uint64_t wanted = (bytes >> 20) + 1;
@@ -124,28 +124,26 @@ std::vector<std::vector<StreamedTexture>> streamed(const ServerFlags& o, const k
   std::vector<std::string> names;
   for (const FeedVolume& volume : feed.volumes) {
     auto& textures = all.emplace_back();
-    std::size_t place = 0;
     for (const TextureGroup& group : volume.desc.groups) {
       for (const NamedTexture& texture : group.textures) {
-        const bool color = texture.desc.record.count >= 3;
+        names.push_back(texture.name);
+        StreamedTexture& made = textures.emplace_back();
+        made.texture = texture.name;
+        if (!volume.errors.empty()) made.source_error = volume.errors[textures.size() - 1];
         if (!is_probes(volume)) {
-          textures.push_back({texture.name, 1, 0, max_error(o, group, texture),
-                              volume.errors.empty() ? 0 : volume.errors[place]});
+          made.max_error = max_error(o, group, texture);
+          const std::size_t place = textures.size() - 1;
           if (!volume.quantisers.empty() && volume.quantisers[place] >= 0)
-            use_quantiser(o, volume.quantisers[place], textures.back(), lossy);
-          ++place;
-          names.push_back(texture.name);
+            use_quantiser(o, volume.quantisers[place], made, lossy);
           continue;
         }
+        const bool color = texture.desc.record.count >= 3;
         // Bundled textures, and groups that depend on one another, have one interval.
         const bool apart = !group.bundled && volume.desc.groups.size() == 1;
-        textures.push_back({texture.name,
-                            color || !apart ? o.color_interval : o.visibility_interval,
-                            color ? o.color_threshold : o.visibility_threshold,
-                            tools::max_error_for(o.max_error, texture.name, texture.desc.record),
-                            volume.errors.empty() ? 0 : volume.errors[place++]});
-        names.push_back(texture.name);
-        if (textures.back().threshold > 0 && textures.back().max_error > 0) {
+        made.interval = color || !apart ? o.color_interval : o.visibility_interval;
+        made.threshold = color ? o.color_threshold : o.visibility_threshold;
+        made.max_error = tools::max_error_for(o.max_error, texture.name, texture.desc.record);
+        if (made.threshold > 0 && made.max_error > 0) {
           tools::fail(Exit::usage,
                       "texture {}: --{}-threshold and --max-error exclude each other; --max-error "
                       "{}=0 leaves it to the threshold",

@@ -87,8 +87,8 @@ ServerStatistics::ServerStatistics(const Output& output, const std::vector<FeedV
       terminal_(!output.quiet && isatty(STDERR_FILENO) != 0) {
   for (const FeedVolume& volume : volumes) {
     first_stream_.push_back(streams_.size());
-    for (const NamedTexture& texture : volume.textures()) {
-      streams_.push_back(volume.name + "." + texture.name);
+    for (const NamedTexture* texture : textures_of(volume.desc)) {
+      streams_.push_back(volume.name + "." + texture->name);
     }
   }
   if (!log_) return;

@@ -15,7 +15,7 @@ void Service::publish(const FeedFrame& frame) {
     const FeedFrame::Volume& volume = frame.volumes[v];
     tools::check(server_.scroll(v, volume.scroll), "scrolling " + volumes_[v].name);
     tools::check(server_.set_active(v, volume.active), "volume " + volumes_[v].name);
-    const std::vector<NamedTexture> textures = volumes_[v].textures();
+    const auto textures = textures_of(volumes_[v].desc);
     if (viewer_ && volumes_[v].desc.kind == kKindVoxels) {
       const auto& bricks = volume.textures.front();
       viewed_[v].bricks = std::make_shared<const std::vector<std::byte>>(bricks);
@@ -25,10 +25,10 @@ void Service::publish(const FeedFrame& frame) {
       const Status status = server_.publish(v, t, ConstTextureView{volume.textures[t]});
       // Clients keep what they hold until there is memory.
       if (status == Status::out_of_memory) {
-        log("texture {}: {}", textures[t].name, to_string(status));
+        log("texture {}: {}", textures[t]->name, to_string(status));
         continue;
       }
-      tools::check(status, "texture " + textures[t].name);
+      tools::check(status, "texture " + textures[t]->name);
     }
   }
   active_ = 0;

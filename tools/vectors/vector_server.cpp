@@ -6,7 +6,6 @@
 #include "kinds/tracing.h"
 
 #include <atomic>
-#include <cmath>
 
 namespace gicodec::vectors {
 

@@ -5,10 +5,8 @@ extern "C" {
 #include <libavutil/pixdesc.h>
 }
 
-#include <algorithm>
 #include <array>
 #include <filesystem>
-#include <span>
 
 namespace gicodec::hevc {
 namespace {

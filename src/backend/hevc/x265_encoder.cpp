@@ -2,8 +2,6 @@
 
 #include <x265.h>
 
-#include <cstring>
-
 namespace gicodec::hevc {
 namespace {
 

@@ -5,7 +5,6 @@
 #include "simd/vector.h"
 
 #include <bit>
-#include <cstddef>
 #include <cstdint>
 
 namespace gicodec::native {

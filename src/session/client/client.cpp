@@ -2,6 +2,7 @@
 
 #include "base/guard.h"
 #include "base/parallel.h"
+#include "bitstream/description.h"
 #include "session/client/client_frame.h"
 #include "session/client/client_limits.h"
 #include "session/client/client_state.h"
@@ -9,7 +10,6 @@
 #include "texture/view.h"
 
 #include <algorithm>
-#include <map>
 #include <utility>
 
 namespace gicodec {
@@ -23,17 +23,6 @@ constexpr std::uint64_t kFreeQuestions = std::uint64_t{16} << 20, kQuestionRatio
 /// False for unknown backends.
 bool depends_on_mirror_only(std::uint8_t backend) {
   return backend <= kBackendNative && backend != kBackendHevc;
-}
-
-/// The group of a texture, and the id of that group's first texture.
-std::pair<const TextureGroup*, std::uint8_t> group_of(const VolumeDesc& volume,
-                                                      std::uint8_t texture) {
-  std::uint8_t first = 0;
-  auto group = volume.groups.begin();
-  while (texture - first >= static_cast<int>(group->textures.size())) {
-    first = static_cast<std::uint8_t>(first + group++->textures.size());
-  }
-  return {&*group, first};
 }
 
 }  // namespace

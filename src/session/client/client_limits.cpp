@@ -49,15 +49,12 @@ Result<ClientVolume> volume_of(const DescribedVolume& said, const ClientOptions&
   auto desc = read_volume_desc(said.kind, said.description, layouts, options.kinds);
   if (!desc) return desc.status();
   ClientVolume volume{said.id, 0, said.name, *std::move(desc), said.geometry, said.region, {}};
-  for (const TextureGroup& group : volume.desc.groups) {
-    for (const NamedTexture& texture : group.textures) {
-      if (texture_bytes(texture.desc) > options.limits.max_texture_bytes) {
-        return Status::limit_exceeded;
-      }
-      add(memory, texture.desc, volume.region, options.delivery, frames, options.threads.count);
-      const float error = said.textures[volume.textures.size()].largest_error;
-      volume.textures.push_back({texture.name, texture.desc, {}, {}, error});
-    }
+  for (const NamedTexture* texture : textures_of(volume.desc)) {
+    const TextureDesc& own = texture->desc;
+    if (texture_bytes(own) > options.limits.max_texture_bytes) return Status::limit_exceeded;
+    add(memory, own, volume.region, options.delivery, frames, options.threads.count);
+    const float error = said.textures[volume.textures.size()].largest_error;
+    volume.textures.push_back({texture->name, own, {}, {}, error});
   }
   if (!(volume.textures[0].desc.grid == volume.geometry.grid)) return Status::corrupt;
   return volume;

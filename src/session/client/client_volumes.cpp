@@ -1,5 +1,4 @@
 // The volumes of a Client: from the Welcome of a session, and as they come and go.
-#include "base/guard.h"
 #include "session/client/client_frame.h"
 #include "session/client/client_limits.h"
 #include "session/client/client_state.h"
