@@ -44,8 +44,9 @@ ContainerDescription describe(const Source& source, const FrameTimes& times,
 }  // namespace
 
 SourceContainer::SourceContainer(const std::string& path, const Source& source,
-                                 const FrameTimes& times, const std::string& backend)
-    : output_(path, describe(source, times, path)) {
+                                 const FrameTimes& times, const std::string& backend,
+                                 tools::Existing existing)
+    : output_(path, describe(source, times, path), existing) {
   for (const SourceVolume& volume : source.volumes) {
     VolumeEncoderOptions options;
     options.backend = backend;

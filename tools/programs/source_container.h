@@ -20,9 +20,10 @@ using tools::times_of;
 
 class SourceContainer {
  public:
-  /// All calls throw tools::Error.
+  /// `existing`: what finish() may replace. All calls throw tools::Error.
   SourceContainer(const std::string& path, const Source& source, const FrameTimes& times,
-                  const std::string& backend);
+                  const std::string& backend,
+                  tools::Existing existing = tools::Existing::container);
   void add(std::uint64_t frame, const SourceFrame& contents);
   void finish();
   /// Instead of finish(): keeps what was written; returns the file's name, empty if there is none.
