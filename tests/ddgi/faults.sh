@@ -47,6 +47,19 @@ absent dead.gic
 expect 4 "left over" "${run[@]}" --frames 1 -o dead.gic
 expect 0 "" "$gicodec" info dead.gic.partial --allow-incomplete
 
+# Without --overwrite a container that appears meanwhile stays, and what was traced is beside it.
+"${run[@]}" --frames 2000 -o late.gic 2> words &
+process=$!
+until begun late.gic.partial || ! kill -0 $process 2> /dev/null; do sleep 0.02; done
+cp reference.gic late.gic
+kill -TERM $process
+wait $process
+code=$?
+[ $code -eq 4 ] || fail "exit code $code instead of 4 where a container appeared: $(cat words)"
+said "late.gic: has appeared meanwhile; the result is late.gic.partial"
+cmp -s reference.gic late.gic || fail "a container that appeared meanwhile was replaced"
+expect 0 "sound" "$gicodec" verify late.gic.partial
+
 # --overwrite leaves what was there until all is traced.
 cp reference.gic former.gic
 stop KILL 137 former.gic.partial "${run[@]}" --seed 2 --frames 100000 --overwrite -o former.gic

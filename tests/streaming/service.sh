@@ -241,6 +241,22 @@ signal_connecting() {
   says connecting "received 0 of 3 updates: interrupted"
 }
 
+# Interrupted, maybe while its scene loads, a client says what it was to do and did not.
+signal_viewing() {
+  local client=("$bin/gi-client" --connect 127.0.0.1:1 --patience 1000 --scene street)
+  start unproven "${client[@]}" --expect-proofs
+  hears $last
+  kill -HUP $last
+  ends 1 $last unproven
+  says unproven "no proof"
+  start unrecorded "${client[@]}" --record never.gic
+  hears $last
+  kill -HUP $last
+  ends 1 $last unrecorded
+  says unrecorded "had nothing to write"
+  [ ! -e never.gic ] || failed "there is a recording of nothing"
+}
+
 signal_tracing() {
   start tracing "$bin/gi-server" --scene villa --mode noisy --rays 65536 --control tracing.socket
   until_true test -e tracing.socket
@@ -252,4 +268,5 @@ signal_tracing() {
 
 beside operator lossy layouts gone cut_off scenes signal_tracing
 beside left_socket hurt_dumps hurt_later strange_names unseen signal_loading signal_connecting
+beside signal_viewing
 finish

@@ -18,9 +18,11 @@ namespace gicodec::tools {
 
 class ContainerOutput {
  public:
-  ContainerOutput(const std::string& path, const ContainerDescription& description)
+  /// `existing`: what finish() may replace.
+  ContainerOutput(const std::string& path, const ContainerDescription& description,
+                  Existing existing = Existing::container)
       : name_(path == "-" ? "standard output" : path),
-        file_(path, Existing::container, AtomicFile::Temporary::partial),
+        file_(path, existing, AtomicFile::Temporary::partial),
         sink_(file_.stream()) {
     auto writer = ContainerWriter::create(sink_, description);
     require(writer.status());

@@ -290,8 +290,9 @@ void AtomicFile::commit() {
     }
     if (rename_to(temporary_, target_, existing_) != 0) {
       if (errno == EEXIST && kept_) {
-        fail(Exit::io, "{}: has appeared meanwhile and is no .gic container; the result is {}",
-             path_, std::exchange(temporary_, {}));
+        fail(Exit::io, "{}: has appeared meanwhile{}; the result is {}", path_,
+             existing_ == Existing::container ? " and is no .gic container" : "",
+             std::exchange(temporary_, {}));
       }
       if (errno == EEXIST) fail_existing(path_, existing_);
       fail_errno("cannot be renamed to");

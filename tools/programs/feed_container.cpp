@@ -43,8 +43,8 @@ ContainerDescription describe(const Feed& feed, const FrameTimes& times, const s
 }  // namespace
 
 FeedContainer::FeedContainer(const std::string& path, const Feed& feed, const FrameTimes& times,
-                             const std::string& backend)
-    : output_(path, describe(feed, times, path)) {
+                             const std::string& backend, tools::Existing existing)
+    : output_(path, describe(feed, times, path), existing) {
   for (const FeedVolume& volume : feed.volumes) {
     VolumeEncoderOptions options;
     options.backend = backend;

@@ -20,9 +20,9 @@ using tools::times_of;
 
 class FeedContainer {
  public:
-  /// All calls throw tools::Error.
+  /// `existing`: what finish() may replace. All calls throw tools::Error.
   FeedContainer(const std::string& path, const Feed& feed, const FrameTimes& times,
-                const std::string& backend);
+                const std::string& backend, tools::Existing existing = tools::Existing::container);
   void add(std::uint64_t frame, const FeedFrame& contents);
   void finish();
   /// Instead of finish(): keeps what was written; returns the file's name, empty if there is none.

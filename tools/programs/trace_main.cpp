@@ -67,6 +67,11 @@ Exit list_scenes() {
   return Exit::ok;
 }
 
+/// What the container may replace, at the start and when all is traced.
+tools::Existing replaceable(const Options& o) {
+  return o.overwrite ? tools::Existing::container : tools::Existing::refuse;
+}
+
 /// Writes the scene as glTF, for irradiance maps with their coordinates as TEXCOORD_1.
 void export_scene(const Options& o, const Scene& scene, const tools::InputFiles& inputs) {
   const TracedKind& kind = traced_kind(o.kind);
@@ -155,7 +160,7 @@ void write_trace(const Options& o, Scene scene) {
   });
   print_remarks(feed.remarks, o.quiet);
   const FrameTimes times{o.start, o.fps};
-  FeedContainer container(o.output, feed, times, "native");
+  FeedContainer container(o.output, feed, times, "native", replaceable(o));
   std::uint32_t frame = 0;
   try {
     Progress progress(o);
@@ -191,8 +196,7 @@ Exit trace(const Options& o) {
   const tools::InputFiles inputs(scene.files);
   if (!o.export_gltf.empty()) export_scene(o, scene, inputs);
   if (o.output.empty()) return Exit::ok;
-  check_output(o.output, inputs,
-               o.overwrite ? tools::Existing::container : tools::Existing::refuse);
+  check_output(o.output, inputs, replaceable(o));
   write_trace(o, std::move(scene));
   return Exit::ok;
 }

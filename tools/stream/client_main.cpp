@@ -101,11 +101,11 @@ Exit run_load_test(const ClientFlags& o, const CameraPath& path) {
                                                : "the time was over");
 }
 
-/// The exit code of the recording, if all else succeeded.
+/// The exit code of the recording, if all else succeeded. `recording`: null if it did not begin.
 Exit recorded(const ClientFlags& o, const ClientRecording* recording) {
-  if (recording == nullptr || recording->exit() != Exit::ok)
-    return recording == nullptr ? Exit::ok : recording->exit();
-  if (!recording->files().empty()) return Exit::ok;
+  if (o.record.empty()) return Exit::ok;
+  if (recording != nullptr && recording->exit() != Exit::ok) return recording->exit();
+  if (recording != nullptr && !recording->files().empty()) return Exit::ok;
   log_line("gi-client: {}: is not there, since no update came: --record had nothing to write",
            o.record);
   return Exit::different;
@@ -200,7 +200,9 @@ Exit run(ClientFlags& o) {
 
   const auto loaded = unless_interrupted([&] { return load(o, render); });
   if (!loaded) {
-    end_now(enough(o, 0, 0, "interrupted"));
+    Exit exit = judge(o, {});
+    if (exit == Exit::ok) exit = enough(o, 0, 0, "interrupted");
+    end_now(exit == Exit::ok ? recorded(o, nullptr) : exit);
   }
   const ddgi::Scene* const scene = loaded->scene.get();
   if (scene != nullptr) o.viewer.scene = ddgi::scene_id(kinds::scene_label(o.scene), *scene);

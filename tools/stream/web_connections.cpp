@@ -148,7 +148,7 @@ int WebLoop::Loop::write(WebLink* link) {
 }
 
 /// Handles the end of a connection in any state.
-void WebLoop::Loop::gone(WebLink* link, const std::string& reason) {
+void WebLoop::Loop::gone(WebLink* link, std::string_view reason) {
   if (link == beginning) {
     failed = true;
     why = reason;
@@ -161,10 +161,10 @@ void WebLoop::Loop::gone(WebLink* link, const std::string& reason) {
   link->wsi = nullptr;
   // A server with a refused certificate would be refused again.
   if (!link->why.empty())
-    return state.closed(link, announced, "the server is not trusted: " + link->why, true);
+    return state.closed(link, announced, {"the server is not trusted: ", link->why}, true);
   const bool foreign = reason.starts_with("HS:");  // libwebsockets, of answers to the upgrade
   state.closed(link, announced,
-               foreign ? "what answers there is no gi-server; is it the port?" : reason, foreign);
+               {foreign ? "what answers there is no gi-server; is it the port?" : reason}, foreign);
 }
 
 int WebLoop::Loop::answer(WebLink* link, lws* wsi) {

@@ -41,6 +41,7 @@ struct WebLink {
   TcpState tcp;
 
   // Guarded by the transport's mutex.
+  std::list<NetEvent> last = std::list<NetEvent>(1);  ///< memory for the event of its end
   std::deque<Outgoing> unsent;
   std::size_t unsent_bytes = 0;
   std::size_t waiting = 0, waiting_bytes = 0;  ///< received, and not taken yet

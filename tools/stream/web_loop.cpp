@@ -159,7 +159,8 @@ int WebLoop::Loop::take(lws* wsi, lws_callback_reasons reason, void* user, void*
       return write(link);
     case LWS_CALLBACK_CLIENT_CONNECTION_ERROR:
       lws_set_opaque_user_data(wsi, nullptr);
-      gone(link, in == nullptr ? std::string() : std::string(static_cast<const char*>(in), size));
+      gone(link, in == nullptr ? std::string_view()
+                               : std::string_view(static_cast<const char*>(in), size));
       return 0;
     case LWS_CALLBACK_CLOSED:
     case LWS_CALLBACK_CLIENT_CLOSED:

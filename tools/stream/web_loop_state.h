@@ -42,7 +42,7 @@ struct WebLoop::Loop {
   void begin(WebLink* link);
   int opened(WebLink* link, lws* wsi);
   int write(WebLink* link);
-  void gone(WebLink* link, const std::string& reason);
+  void gone(WebLink* link, std::string_view reason);
   int answer(WebLink* link, lws* wsi);
   void look_after_all();
   /// Ends the connection soon. Does nothing for a link that libwebsockets does not have.

@@ -31,7 +31,13 @@ WebLink* WebState::add(std::unique_ptr<WebLink> link) {
 }
 
 void WebState::push(NetEvent event) {
-  events.push_back(std::move(event));
+  std::list<NetEvent> one;
+  one.push_back(std::move(event));
+  push(one);
+}
+
+void WebState::push(std::list<NetEvent>& event) noexcept {
+  events.splice(events.end(), event);
   const std::uint64_t one = 1;
   if (events.size() > 1) return;
   [[maybe_unused]] const auto written = ::write(wake_up, &one, sizeof one);
@@ -72,23 +78,28 @@ void WebState::receive(WebLink* link, std::span<const std::byte> bytes, const We
 }
 
 void WebState::refuse(WebLink* link, Reason reason) {
+  add_event(link, NetEvent::Type::broken, reason);
   link->broken = true;
   link->partial = {};
-  add_event(link, NetEvent::Type::broken, reason);
 }
 
-void WebState::closed(WebLink* link, bool announced, const std::string& why, bool final) {
+void WebState::closed(WebLink* link, bool announced, std::initializer_list<std::string_view> why,
+                      bool final) noexcept {
   const std::lock_guard lock(mutex);
   link->gone = true;
   link->unsent.clear();
   link->unsent_bytes = 0;
   if (link->abandoned || !announced) return forget(link);
-  NetEvent event;
+  NetEvent& event = link->last.front();
   event.type = NetEvent::Type::closed;
   event.link = {nullptr, link};
-  event.why = why;
   event.final = final;
-  push(std::move(event));
+  try {
+    for (const std::string_view part : why) event.why += part;
+  } catch (const std::bad_alloc&) {
+    event.why.clear();
+  }
+  push(link->last);
 }
 
 }  // namespace gicodec::streaming

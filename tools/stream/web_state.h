@@ -6,12 +6,14 @@
 #include "web_link.h"
 #include "web_page.h"
 
-#include <deque>
+#include <initializer_list>
+#include <list>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace gicodec::streaming {
@@ -35,12 +37,17 @@ struct WebState {
   /// What cannot be a message is known before it is kept.
   void receive(WebLink* link, std::span<const std::byte> bytes, const WebFrame& frame);
   /// Nothing more is taken from a peer that breaks a rule; the caller says the reason, and closes.
+  /// std::bad_alloc changes nothing.
   void refuse(WebLink* link, Reason reason);
-  /// Forgets it, after telling if the caller knows of it.
-  void closed(WebLink* link, bool announced, const std::string& why, bool final);
+  /// Forgets it, after telling if the caller knows of it. `why`: parts of the reason, which gets
+  /// lost without memory.
+  void closed(WebLink* link, bool announced, std::initializer_list<std::string_view> why,
+              bool final) noexcept;
 
   // With the mutex held:
   void push(NetEvent event);
+  /// Appends an event that has its memory.
+  void push(std::list<NetEvent>& event) noexcept;
   void forget(WebLink* link) { links.erase(link); }
 
   NetOptions options;
@@ -50,7 +57,7 @@ struct WebState {
 
   std::mutex mutex;  ///< guards what follows
   std::map<WebLink*, std::unique_ptr<WebLink>> links;
-  std::deque<NetEvent> events;
+  std::list<NetEvent> events;
   std::vector<WebLink*> wanted;  ///< connections to begin
   TlsContext next_certificate;
   Shown shown;
