@@ -65,6 +65,11 @@ cp reference.gic former.gic
 stop KILL 137 former.gic.partial "${run[@]}" --seed 2 --frames 100000 --overwrite -o former.gic
 cmp -s reference.gic former.gic || fail "a killed --overwrite changed what was there"
 rm former.gic.partial
+stop TERM 143 former.gic.partial "${run[@]}" --seed 2 --frames 100000 --overwrite -o former.gic
+cmp -s reference.gic former.gic || fail "an interrupted --overwrite changed what was there"
+said "it stays as it was, and former.gic.partial holds "
+expect 0 "" "$gicodec" info former.gic.partial --allow-incomplete
+rm former.gic.partial
 
 # Files must not grow: what was there stays, and frames before that in what was written so far.
 limited() { (ulimit -f 4 && exec "$@"); }

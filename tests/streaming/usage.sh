@@ -124,14 +124,14 @@ kinds() {
 waits() {
   server waits --quiet --wait 2
   expect 1 "no update came, and with it no proof; --record had nothing to write" "$bin/gi-client" --connect 127.0.0.1:$port --seconds 1 --expect-proofs --record nothing.gic
-  [[ "$output" == *"sent no proofs"* ]] && failed "$output"
+  [[ "$output" == *"no proofs came"* ]] && failed "$output"
   expect 1 "nothing.gic: is not there, since no update came" "$bin/gi-client" --connect 127.0.0.1:$port --seconds 1 --record nothing.gic
   [ -z "$(ls | grep nothing)" ] || failed "a recording of nothing is there"
 }
 # Nobody there: the reason, and nothing about what nobody could send.
 nobody() {
   expect 4 "127.0.0.1:1: no server answers" "$bin/gi-client" --connect 127.0.0.1:1 --expect-proofs "$@"
-  [[ "$output" == *"sent no proofs"* ]] && failed "$*: $output"
+  [[ "$output" == *"no proofs came"* ]] && failed "$*: $output"
 }
 nobody_for_a_while() { nobody --seconds=0.5; }
 nobody_for_two() { nobody --simulate=2 --seconds=0.5; }

@@ -20,6 +20,9 @@ for wrong in "ada users:3:has a user ada" "a/b users:2:a name has" "ada .:4:cann
   ends $code $last wrong
   says wrong "$text"
 done
+"$bin/gi-server" --add-user eve users >/dev/full 2>unseen.log && failed "a token that nobody saw was given out"
+says unseen "remove the line of eve from users, and add the user again"
+sed -i /^eve:/d users
 echo "ada:pbkdf2-sha256:0:00:00" >damaged
 start damaged "$bin/gi-server" $small --users damaged
 ends 3 $last damaged

@@ -14,6 +14,7 @@
 #include <array>
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <utility>
 
 namespace {
@@ -175,10 +176,17 @@ void write_trace(const Options& o, Scene scene) {
     progress.clear();
     if (!o.quiet) print_sums(o, container, progress);
   } catch (const tools::Interrupted&) {
-    if (frame > 0) container.finish();
+    // A container that is to be replaced stays until all is traced.
+    const bool replaces = o.overwrite && std::filesystem::exists(o.output);
+    std::string kept = o.output;
+    if (frame > 0 && replaces) kept = container.leave();
+    if (frame > 0 && !replaces) container.finish();
     tools::print(stderr, "gi-trace: {}: interrupted; {}\n", o.output,
-                 frame == 0 ? "no frame was finished"
-                            : fmt::format("it holds {} of {} frames", frame, o.frames));
+                 frame == 0  ? "no frame was finished"
+                 : !replaces ? fmt::format("it holds {} of {} frames", frame, o.frames)
+                             : fmt::format("it stays as it was, and {} holds {} of {} frames, for "
+                                           "--allow-incomplete",
+                                           kept, frame, o.frames));
     throw;
   } catch (const tools::Error& problem) {
     const std::string left = frame > 0 ? container.leave() : "";

@@ -41,6 +41,8 @@ std::string unusable(Status status) {
         "; it streams a volume of a kind that this gi-client does not know: a newer one may, or "
         "the "
         "application that the volume is for";
+  if (status == Status::backend_missing)
+    cure = "; it streams with a backend that this gi-client is built without, such as hevc";
   if (status == Status::limit_exceeded) cure = "; if it is memory, --max-memory allows more";
   return fmt::format("what the server sends cannot be used: {}{}", to_string(status), cure);
 }

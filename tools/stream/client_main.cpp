@@ -2,6 +2,7 @@
 #include "client_flags.h"
 #include "client_recording.h"
 #include "client_summary.h"
+#include "common/backend_flags.h"
 #include "common/cli.h"
 #include "common/program.h"
 #include "ddgi/scene_id.h"
@@ -63,7 +64,7 @@ Exit judge(const ClientFlags& o, const Received& r) {
     return Exit::different;
   }
   if (r.proofs == 0) {
-    log_line("gi-client: the server sent no proofs; it does with --proofs");
+    log_line("gi-client: no proofs came; a server with --proofs sends one with each packet");
     return Exit::different;
   }
   if (r.lost > 0) {
@@ -177,6 +178,8 @@ Exit run(ClientFlags& o) {
   if (!token.remark.empty() && !o.quiet) log_line("gi-client: {}", token.remark);
   o.viewer.client.token = token.text;
   o.viewer.client.delivery = o.delivery == "unicast" ? Delivery::unicast : Delivery::shared;
+  const auto hevc = tools::hevc_decoder({});
+  if (hevc != nullptr) o.viewer.client.backends = {hevc.get()};
   DecodeLimits& limits = o.viewer.client.limits;
   limits.max_texture_bytes = limits.max_total_bytes = std::uint64_t{o.memory} << 20;
   o.viewer.subscribe = parse_box(o.subscribe);

@@ -18,6 +18,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <set>
 #include <sstream>
 #include <thread>
@@ -226,6 +229,12 @@ void take_addresses(ServerFlags& o) {
 Exit run(ServerFlags& o) {
   if (!o.add_user.empty()) {
     tools::print("{}\n", add_user(o.add_user[1], o.add_user[0]));
+    if (std::fflush(stdout) != 0)
+      fail(
+          Exit::io,
+          "standard output cannot be written: {}; nobody saw the token: remove the line of {} from "
+          "{}, and add the user again",
+          std::strerror(errno), o.add_user[0], o.add_user[1]);
     return Exit::ok;
   }
   if (!o.ask.empty()) {

@@ -139,12 +139,15 @@ Status Client::State::take(const UpdateMessage& update) {
     for (const UpdateMessage::Part& part : update.parts) {
       const Status status = apply(part);
       if (status == Status::out_of_memory || status == Status::limit_exceeded ||
-          status == Status::cancelled) {
+          status == Status::cancelled || status == Status::backend_missing) {
         return status;
       }
       if (status != Status::ok) return ask_again();
     }
     for (const auto& [stream, block] : told_presence) {
+      if (options.cancel != nullptr && options.cancel->load(std::memory_order_relaxed)) {
+        return Status::cancelled;
+      }
       if (!presence_holds(stream, block)) return Status::corrupt;
     }
   }

@@ -92,6 +92,26 @@ TextureDesc stream_desc(const ClientVolume& volume, StreamId id) noexcept {
                                              : region_texture(desc, volume.region, id.region);
 }
 
+/// Bytes of the records that a new presence is compared with, unless they come with the update.
+static std::uint64_t presence_work(const UpdateMessage& update, const ClientFrame& frame,
+                                   StreamId stream, const PacketInfo& info) {
+  const ClientVolume& volume = *frame.find(stream.volume);
+  const auto [group, first] = group_of(volume.desc, stream.texture);
+  if (stream.texture - first != group->presence) return 0;
+  std::uint64_t work = 0;
+  for (std::size_t t = 0; t < group->textures.size(); ++t) {
+    if (group->textures[t].desc.presence == Presence::all) continue;
+    StreamId other = stream;
+    other.texture = static_cast<std::uint8_t>(first + t);
+    const auto comes = [&](const UpdateMessage::Part& part) { return part.stream == other; };
+    if (std::any_of(update.parts.begin(), update.parts.end(), comes)) continue;
+    const TextureDesc desc = stream_desc(volume, other);
+    const std::uint64_t blocks = info.all_blocks ? block_count(desc) : info.blocks;
+    work = saturated(work, blocks * block_bytes(desc));
+  }
+  return work;
+}
+
 std::uint64_t update_work(const UpdateMessage& update, const ClientFrame& frame) {
   std::uint64_t work = 0;
   const auto desc_of = [&](StreamId id) { return stream_desc(*frame.find(id.volume), id); };
@@ -99,6 +119,7 @@ std::uint64_t update_work(const UpdateMessage& update, const ClientFrame& frame)
     const auto info = peek(part.packet);
     if (!info) continue;
     work = saturated(work, packet_work(desc_of(part.stream), *info));
+    work = saturated(work, presence_work(update, frame, part.stream, *info));
   }
   for (const UpdateMessage::Proof& proof : update.proofs) {
     const TextureDesc desc = desc_of(proof.stream);
