@@ -8,7 +8,9 @@
 #include "session/client/client_limits.h"
 
 #include <gicodec/client.h>
+#include <gicodec/photons.h>
 #include <gicodec/server.h>
+#include <gicodec/volume_encoder.h>
 
 #include <gtest/gtest.h>
 
@@ -149,6 +151,34 @@ TEST_F(ClientCost, StreamsComeOnce) {
   EXPECT_EQ(client_after(update, options), Status::ok);
   options.limits.max_work_bytes -= 1;
   EXPECT_EQ(client_after(update, options), Status::limit_exceeded);
+}
+
+/// A presence is compared with all records that the client holds of its blocks.
+TEST(PresenceCost, CountsRecordsThatDoNotComeWithIt) {
+  const VolumeDesc volume = *photon_volume(8, 64);
+  const auto textures = textures_of(volume);
+  std::vector<std::vector<std::byte>> contents;
+  std::uint64_t records = 0;
+  ClientFrame frame;
+  frame.volumes.push_back(
+      {0, 0, "photons", volume, {volume.groups[0].textures[0].desc.grid}, {}, {}});
+  for (const NamedTexture* texture : textures) {
+    contents.emplace_back(texture_bytes(texture->desc));
+    if (texture->desc.presence != Presence::all) records += contents.back().size();
+    frame.volumes[0].textures.push_back({texture->name, texture->desc, {}, {}, 0});
+  }
+  ASSERT_GT(records, 0U);
+  const std::vector<ConstTextureView> views(contents.begin(), contents.end());
+  const auto packets = *VolumeEncoder::create(volume)->encode(views);
+  UpdateMessage whole;
+  std::uint64_t sum = 0;
+  for (std::uint8_t t = 0; t < packets.size(); ++t) {
+    const UpdateMessage::Part part{{0, t}, 0, packets[t]};
+    const UpdateMessage one{.parts = {part}};
+    whole.parts.push_back(part);
+    sum += update_work(one, frame);
+  }
+  EXPECT_EQ(sum, update_work(whole, frame) + records);
 }
 
 TEST_F(ClientCost, WorkCanBeCancelled) {

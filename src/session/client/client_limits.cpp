@@ -106,7 +106,9 @@ static std::uint64_t presence_work(const UpdateMessage& update, const ClientFram
     const auto comes = [&](const UpdateMessage::Part& part) { return part.stream == other; };
     if (std::any_of(update.parts.begin(), update.parts.end(), comes)) continue;
     const TextureDesc desc = stream_desc(volume, other);
-    const std::uint64_t blocks = info.all_blocks ? block_count(desc) : info.blocks;
+    const std::uint64_t all = block_count(desc);
+    const bool any = info.all_blocks || is_keyframe(info.type);  // a keyframe clears the others
+    const std::uint64_t blocks = any ? all : std::min<std::uint64_t>(info.blocks, all);
     work = saturated(work, blocks * block_bytes(desc));
   }
   return work;
