@@ -148,8 +148,9 @@ TEST(HevcStreaming, RecordingsBeginWithKeyframes) {
 
 /// A client of a shared stream.
 struct Watcher {
-  explicit Watcher(const Backend& backend)
-      : client(*Client::create({.backends = {&backend}, .delivery = Delivery::shared})) {}
+  explicit Watcher(const Backend& backend, const Budget& budget = {})
+      : client(*Client::create(
+            {.backends = {&backend}, .delivery = Delivery::shared, .budget = budget})) {}
 
   void connect(Server& server, double now) {
     connection = *server.connect(now);
@@ -234,6 +235,50 @@ TEST(HevcStreaming, ClientsShareALossyStream) {
   settings.packing = HevcPacking::luma;
   settings.lossy_qp = 20;
   share(HevcBackend(settings), true);
+}
+
+/// Keyframes come when a faster client asks; a slow one gets those after its turns.
+TEST(HevcStreaming, SlowClientsGetKeyframes) {
+  const HevcBackend backend;
+  auto server = *Server::create({.backends = {&backend}, .proofs = true});
+  Texture texture(ddgi_irradiance(kGrid));
+  StreamedTexture streamed{.texture = "color", .backend = &backend};
+  streamed.settings.preset = "ultrafast";
+  ASSERT_TRUE(server
+                  .add_volume("volume", probes_of({{"color", texture.desc()}}), {kGrid},
+                              std::span(&streamed, 1))
+                  .ok());
+  Random random(1);
+  texture.fill(Fill::small, random);
+  std::vector<Watcher> watchers;
+  std::vector<int> last, longest;
+  constexpr int kUpdates = 240, kEvery = 16, kKeyframes = 16;
+  for (int update = 0; update < kUpdates; ++update) {
+    const double now = 0.1 * (update + 1);
+    if (update % 5 == 0 && watchers.size() < 6) {
+      // The first takes part in every second update, and waits for each keyframe.
+      const std::uint32_t blocks = watchers.empty() ? kBlocks / 4 : 1;
+      watchers.emplace_back(backend, Budget{.blocks = blocks});
+      watchers.back().connect(server, now);
+      last.push_back(update);
+      longest.push_back(0);
+    }
+    for (std::uint32_t block = update % 2; block < kBlocks; block += 2) {
+      texture.fill_block(block, Fill::small, random);
+      texture.fill_band(block);
+    }
+    ASSERT_EQ(server.publish(0, 0, std::as_const(texture).view()), Status::ok);
+    ASSERT_EQ(server.update(now, now), Status::ok);
+    for (std::size_t i = 0; i < watchers.size(); ++i) {
+      if (!server.packets(watchers[i].connection).empty()) last[i] = update;
+      longest[i] = std::max(longest[i], update - last[i]);
+      watchers[i].take(server, now, false);
+    }
+  }
+  for (std::size_t i = 0; i < watchers.size(); ++i) {
+    EXPECT_LE(longest[i], kEvery + kKeyframes) << i;
+    EXPECT_EQ(watchers[i].client.statistics().failed_proofs, 0U);
+  }
 }
 
 /// Unicast clients would each hold something else.

@@ -22,6 +22,7 @@ programs() {
 }
 nonsense() {
   expect 2 "--simulate takes no --record" "$bin/gi-client" --connect 127.0.0.1:1 --simulate 2 --record x.gic
+  expect 2 "--discard" "$bin/gi-client" --connect 127.0.0.1:1 --simulate 2 --discard --expect-proofs
   expect 2 "--record: expected a file" "$bin/gi-client" --connect 127.0.0.1:1 --record -
   # Numbers that do not fit, and what could never be.
   for updates in -1 99999999999999999999; do
@@ -37,7 +38,11 @@ nonsense() {
   expect 2 "unknown scene" "$bin/gi-server" --scene nowhere
   expect 2 "--listen" "$bin/gi-server" --scene villa --listen 127.0.0.1
   expect 2 "--fine" "$bin/gi-server" --scene villa --fine 0x1x1
-  expect 2 "--fine" "$bin/gi-server" --play x.gic --fine 4x4x4
+  # What is played was traced already.
+  for flag in "--fine 4x4x4" "--kind voxels" "--set size=1" "--grid 4x4x4" "--bounds 0,0,0,1,1,1" "--rays 16" \
+      "--mode noisy"; do
+    expect 2 "${flag%% *} is for scenes that are traced" "$bin/gi-server" --play x.gic $flag
+  done
   expect 2 "--backend" "$bin/gi-server" --scene villa --backend hevc
   expect 2 "backend native" "$bin/gi-server" $small --preset huge
   expect 4 "missing.gic" "$bin/gi-server" --play missing.gic

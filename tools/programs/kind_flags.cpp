@@ -74,6 +74,15 @@ void refuse_flags_of_probes(const tools::Command& app, const KindFlags& flags,
   for (const auto& [name, values] : flags.own) refuse(fmt::format("--{}", name));
 }
 
+void refuse_flags_of_tracing(const tools::Command& app, const KindFlags& flags,
+                             std::span<const char* const> of_tracing) {
+  const auto refuse = [&](const std::string& flag) {
+    if (app.given(flag)) tools::fail(tools::Exit::usage, "{} is for scenes that are traced", flag);
+  };
+  for (const char* const flag : of_tracing) refuse(flag);
+  for (const auto& [name, values] : flags.own) refuse(fmt::format("--{}", name));
+}
+
 void refuse_flags_of_culled(const tools::Command& app, const KindFlags& flags,
                             std::span<const char* const> of_culled) {
   if (traced_kind(flags).culled) return;

@@ -31,6 +31,9 @@ void add_drawing_flag(tools::Command& app, DrawingFlags& flags);
 /// or one of `of_probes`, was given.
 void refuse_flags_of_probes(const tools::Command& app, const KindFlags& flags,
                             std::span<const char* const> of_probes);
+/// Throws tools::Error of Exit::usage if a kind's own flag, or one of `of_tracing`, was given.
+void refuse_flags_of_tracing(const tools::Command& app, const KindFlags& flags,
+                             std::span<const char* const> of_tracing);
 /// Throws tools::Error of Exit::usage if the kind is not culled and one of `of_culled` was given.
 void refuse_flags_of_culled(const tools::Command& app, const KindFlags& flags,
                             std::span<const char* const> of_culled);

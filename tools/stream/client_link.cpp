@@ -34,6 +34,14 @@ std::string refused(const Address& server, const std::string& why) {
   return fmt::format("{}: {}", to_string(server), why);
 }
 
+std::string reason_and_cure(Reason reason) {
+  const char* const cure = reason == Reason::token ? "; --token-file names the right one"
+                           : reason == Reason::unicast_full
+                               ? "; --delivery shared needs none of its own"
+                               : "";
+  return fmt::format("{}{}", to_string(reason), cure);
+}
+
 std::string unusable(Status status) {
   std::string_view cure;
   if (status == Status::unknown_kind)
@@ -138,11 +146,7 @@ bool ClientLink::over() {
     late_ = true;
     lost();
   } else {
-    const char* const cure = goodbye.reason == Reason::token ? "; --token-file names the right one"
-                             : goodbye.reason == Reason::unicast_full
-                                 ? "; --delivery shared needs none of its own"
-                                 : "";
-    fail(fmt::format("turned away by the server: {}{}", to_string(goodbye.reason), cure));
+    fail("turned away by the server: " + reason_and_cure(goodbye.reason));
   }
   return true;
 }

@@ -24,6 +24,8 @@ struct LinkOptions {
 /// The reason why there is no connection, for people.
 [[nodiscard]] std::string no_answer(const Address& server, const std::string& why = {});
 [[nodiscard]] std::string refused(const Address& server, const std::string& why);
+/// Why the server ended the session, and what helps, for people.
+[[nodiscard]] std::string reason_and_cure(Reason reason);
 /// The fault in the server's messages, for people. `status`: of Client::receive().
 [[nodiscard]] std::string unusable(Status status);
 

@@ -90,7 +90,7 @@ Exit run_load_test(const ClientFlags& o, const CameraPath& path) {
     const std::string why = !r.unusable.empty() ? "; " + r.unusable
                             : r.reason == Reason::left
                                 ? ""
-                                : fmt::format("; the server says: {}", to_string(r.reason));
+                                : "; the server says: " + reason_and_cure(r.reason);
     fail(r.unusable.empty() ? Exit::io : Exit::bad_input, "{} of {} {} served{}", r.served,
          count(o.simulate, "client"), o.simulate == 1 ? "was" : "were", why);
   }
@@ -185,6 +185,9 @@ Exit run(ClientFlags& o) {
   o.viewer.subscribe = parse_box(o.subscribe);
   o.viewer.status = !o.quiet && isatty(STDERR_FILENO) != 0;
   if (o.viewer.client.discard && o.simulate == 0) fail(Exit::usage, "--discard is for --simulate");
+  if (o.viewer.client.discard && o.expect_proofs)
+    fail(Exit::usage,
+         "--discard decodes nothing that --expect-proofs checks; leave out one of them");
   if (o.simulate > 0 && (o.viewer.frames > 0 || !o.subscribe.empty()))
     fail(Exit::usage, "--simulate draws no pictures and takes no --subscribe");
   if (o.simulate == 0 && (o.viewer.frames > 0) != !o.output.empty())

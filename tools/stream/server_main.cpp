@@ -34,8 +34,6 @@ using tools::fail;
 
 kinds::Feed make_feed(const ServerFlags& o) {
   if (!o.play.empty()) {
-    if (!o.kind.own.at("fine").empty()) fail(Exit::usage, "--fine is for scenes that are traced");
-    if (!traced_kind(o.kind).flags) fail(Exit::usage, "--kind is for scenes that are traced");
     return play_feed(
         o.play, {o.loop, o.service.rate, o.allow_incomplete, o.server.settings.isa, o.max_memory});
   }
@@ -339,8 +337,8 @@ int main(int argc, char** argv) {
                                    "--visibility-threshold",
                                    "--view-margin"};
     constexpr std::array kOfCulled{"--view-samples", "--no-culling"};
-    if (!options.play.empty() && !options.kind.set.empty())
-      fail(Exit::usage, "--set is for scenes that are traced");
+    constexpr std::array kOfTracing{"--kind", "--set", "--grid", "--bounds"};
+    if (!options.play.empty()) kinds::refuse_flags_of_tracing(app, options.kind, kOfTracing);
     kinds::refuse_flags_of_probes(app, options.kind, kOfProbes);
     // Clients do not wait for a warm-up that nobody sees.
     auto& warmup = options.kind.own.at("warmup");

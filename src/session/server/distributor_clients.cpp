@@ -142,7 +142,8 @@ Status Distributor::resume(ClientId client, StreamId stream, std::uint32_t seque
     const auto subscriptions = state_->find_subscriptions(*found, stream);
     if (subscriptions.empty()) return Status::invalid_argument;
     Subscription& subscription = subscriptions[state_->find(stream.volume, stream.texture).place];
-    subscription = {subscription.subscribed, sequence, checksum, subscription.first_update};
+    subscription = {subscription.subscribed, subscription.owed, sequence, checksum,
+                    subscription.first_update};
     return Status::ok;
   }
   UpdateStream* const unicast = state_->find(*found, stream);

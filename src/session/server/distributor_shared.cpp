@@ -59,6 +59,14 @@ std::size_t spread(std::uint64_t update, std::size_t count) noexcept {
 
 }  // namespace
 
+/// True if the client gets packets of a region in this update. Keyframes of stateful backends do
+/// not keep to the turns of slow clients, which get the next one after their turn.
+bool Distributor::State::takes_part(const ServedClient& client, const Bundle& bundle,
+                                    std::size_t place,
+                                    std::span<const Subscription> subscriptions) const noexcept {
+  return subscriptions[0].owed || client.rate.turn(bundle.turn(updates), place);
+}
+
 /// Calls visit(volume, bundle, region, place, subscriptions, shared) for each region that a client
 /// subscribes to.
 template <typename Visit>
@@ -94,7 +102,7 @@ void Distributor::State::gather_subscribers() noexcept {
                     std::span<const Subscription> subscriptions, SharedRegion& shared) {
           SubscriberGroup& subscribers = group_of(shared, subscriptions);
           ++subscribers.all;
-          if (!client.suspended && client.rate.turn(bundle.turn(updates), place))
+          if (!client.suspended && takes_part(client, bundle, place, subscriptions))
             ++subscribers.served;
         });
   }
@@ -182,7 +190,7 @@ Status Distributor::State::hand_out_regions(ServedClient& client) noexcept {
       client, [&](const ServedVolume&, const Bundle& bundle, std::uint32_t, std::size_t place,
                   std::span<const Subscription> subscriptions, SharedRegion& shared) {
         places = place + 1;
-        if (!client.rate.turn(bundle.turn(updates), place)) return;
+        if (!takes_part(client, bundle, place, subscriptions)) return;
         packets += group_of(shared, subscriptions).packets.size();
       });
   const Status room = guarded([&]() -> Status {
@@ -200,9 +208,14 @@ Status Distributor::State::hand_out_regions(ServedClient& client) noexcept {
     for_each_subscription(client, [&](const ServedVolume& volume, const Bundle& bundle,
                                       std::uint32_t region, std::size_t place,
                                       std::span<Subscription> subscriptions, SharedRegion& shared) {
-      if ((place < start) != wrapped || !client.rate.turn(bundle.turn(updates), place)) return;
-      ++turns;
+      if ((place < start) != wrapped || !takes_part(client, bundle, place, subscriptions)) return;
       SubscriberGroup& subscribers = group_of(shared, subscriptions);
+      // A turn without its keyframe counts when that comes.
+      const bool own = client.rate.turn(bundle.turn(updates), place);
+      const bool waits =
+          bundle.is_stateful && subscribers.packets.empty() && !is_current(shared, subscriptions);
+      const bool newly = waits && !std::exchange(subscriptions[0].owed, waits);
+      if (!subscribers.packets.empty() || (own && !newly)) ++turns;
       if (subscribers.packets.empty()) return;
       std::size_t size = 0;
       for (const SharedPacket& one : subscribers.packets) size += one.packet->size();
@@ -225,6 +238,7 @@ Status Distributor::State::hand_out_regions(ServedClient& client) noexcept {
       for (std::size_t i = 0; i < subscriptions.size(); ++i) {
         subscriptions[i].sequence = shared.streams[i].sequence();
         subscriptions[i].checksum = shared.streams[i].checksum();
+        subscriptions[i].owed = false;
       }
       --subscribers.all;
     });

@@ -53,6 +53,7 @@ struct UnicastBundle {
 /// A client's subscription to a region, and what it holds of one texture of it.
 struct Subscription {
   bool subscribed = false;
+  bool owed = false;  ///< its turn came while it waited for a keyframe of a stateful backend
   std::uint32_t sequence = 0, checksum = 0;
   std::uint32_t first_update = 0;  ///< after it subscribed
 };
@@ -203,6 +204,8 @@ struct Distributor::State {
                const std::vector<std::uint32_t>* next, unsigned thread,
                std::vector<Written>& written, SubscriberGroup& subscribers);
   Status hand_out_regions(ServedClient& client) noexcept;
+  [[nodiscard]] bool takes_part(const ServedClient& client, const Bundle& bundle, std::size_t place,
+                                std::span<const Subscription> subscriptions) const noexcept;
   [[nodiscard]] bool holds_dependencies(ServedClient& client, const ServedVolume& volume,
                                         const Bundle& bundle, const SharedRegion& dependent,
                                         std::span<const Subscription> subscriptions) const noexcept;
