@@ -34,6 +34,8 @@ nonsense() {
   expect 2 "--wait 9 is for more clients than --max-clients 8" "$bin/gi-server" $small --wait 9 --max-clients 8
   expect 2 "not expected: --grid 4x4x4;" "$bin/gi-client" --grid 4x4x4
   expect 2 "--play" "$bin/gi-server"
+  expect 2 "--loop is for --play" "$bin/gi-server" $small --loop
+  expect 4 "there is no folder nowhere; make it first" "$bin/gi-server" $small --port-file nowhere/port
   expect 2 "--scene or --gltf" "$bin/gi-server"
   expect 2 "unknown scene" "$bin/gi-server" --scene nowhere
   expect 2 "--listen" "$bin/gi-server" --scene villa --listen 127.0.0.1

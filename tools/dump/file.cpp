@@ -146,6 +146,13 @@ bool InputFiles::contains(const std::string& path) const {
   return stat(path.c_str(), &file) == 0 && files_.count({file.st_dev, file.st_ino}) > 0;
 }
 
+void require_folder(const std::string& path) {
+  const std::string folder = fs::path(path).parent_path().string();
+  std::error_code error;
+  if (!folder.empty() && !fs::exists(folder, error) && !error)
+    fail(Exit::io, "{}: cannot be written: there is no folder {}; make it first", path, folder);
+}
+
 void check_output(const std::string& path, const InputFiles& inputs, Existing existing) {
   if (is_terminal(path)) {
     fail(Exit::usage, "{} is a terminal, and the output is not text; redirect it or name a file",
@@ -243,10 +250,7 @@ void AtomicFile::open_temporary(Temporary temporary) {
   if (descriptor < 0) {
     temporary_.clear();
     const int code = errno;
-    const std::string folder = fs::path(target_).parent_path().string();
-    if (std::error_code error; code == ENOENT && !folder.empty() && !fs::exists(folder, error)) {
-      fail(Exit::io, "{}: cannot be written: there is no folder {}; make it first", path_, folder);
-    }
+    if (code == ENOENT) require_folder(target_);
     errno = code;
     fail_errno("cannot be written");
   }
@@ -326,6 +330,9 @@ void make_directory(const std::string& path) {
 }
 
 OutputDirectory::OutputDirectory(std::string path) : path_(std::move(path)) {
+  if (path_ == "-")
+    fail(Exit::usage,
+         "-o -: files go to a folder, not to standard output; ./- names such a folder");
   std::error_code error;
   made_ = !fs::exists(path_, error);
   make_directory(path_);

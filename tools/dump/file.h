@@ -43,6 +43,9 @@ class InputFiles {
 /// Throws Error of Exit::io if there is no file, folder or device of that name.
 void require_exists(const std::string& path);
 
+/// Throws Error of Exit::io if the folder of a file to write is missing.
+void require_folder(const std::string& path);
+
 /// Throws Error unless an output of that name destroys nothing: Exit::usage for an input or a
 /// terminal, Exit::io for a file that `existing` protects. "-" is standard output.
 void check_output(const std::string& path, const InputFiles& inputs, Existing existing);

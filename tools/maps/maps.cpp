@@ -41,16 +41,16 @@ kinds::Feed trace(kinds::TraceRequest request) {
       std::make_shared<MapServer>(*scene, options, request.threads, std::move(request.cancelled));
   kinds::Feed feed = kinds::live_feed(
       "map", tools::take(irradiance_map_volume(server->desc()), "irradiance map"),
-      [scene, server, bases = options.by_bases, reported = false](const kinds::FeedRequest& wanted,
-                                                                  kinds::FeedFrame& frame) mutable {
+      [scene, server, bases = options.by_bases, lossy = options.qp >= 0, reported = false](
+          const kinds::FeedRequest& wanted, kinds::FeedFrame& frame) mutable {
         server->update(wanted.time);
         frame.volumes[0].textures = server->textures();
         if (reported || server->clipped() == 0) return;
         reported = true;
-        frame.remarks.push_back(
-            fmt::format("10 bits hold no irradiance above 1, and that of {} {} is: it comes out "
-                        "darker; E5B9G9R9_UFLOAT_PACK32 holds it",
-                        server->clipped(), bases ? "bases" : "texels"));
+        frame.remarks.push_back(fmt::format(
+            "10 bits hold no irradiance above 1, and that of {} {} is: it comes out "
+            "darker; {}E5B9G9R9_UFLOAT_PACK32 holds it",
+            server->clipped(), bases ? "bases" : "texels", lossy ? "without --set qp " : ""));
       });
   if (options.qp >= 0) feed.volumes[0].quantisers = {-1, options.qp, -1};
   const Parameterisation& map = server->map();
@@ -113,7 +113,12 @@ MapOptions options_of(const kinds::Settings& settings, std::uint32_t seed) {
     if (options.desc.way != MapWay::map)
       tools::fail(tools::Exit::usage, "--set qp needs --set way=map");
     options.qp = static_cast<int>(settings.whole("qp", 0, 51));
-    options.desc.format = Format::A2B10G10R10_UNORM_PACK32;
+    constexpr Format kLossy = Format::A2B10G10R10_UNORM_PACK32;
+    if (options.desc.format != kLossy && settings.text("format") != kFormats[0])
+      tools::fail(tools::Exit::usage,
+                  "--set qp codes A2B10G10R10_UNORM_PACK32; leave out --set "
+                  "format");
+    options.desc.format = kLossy;
   }
   options.bases = settings.whole("bases", 1, kMaxMapBases);
   options.spacing = static_cast<float>(settings.number("spacing", 0, 100));

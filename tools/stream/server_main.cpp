@@ -171,6 +171,7 @@ void check_reports(const ServerFlags& o) {
        {&o.service.port_file, &o.service.statistics.file, &o.service.statistics.log}) {
     if (path->empty()) continue;
     check_output(*path, inputs, tools::Existing::replace);
+    tools::require_folder(*path);
     if (!names.insert(*path).second)
       fail(Exit::usage, "{}: is named for two reports; name another file", *path);
   }
@@ -339,6 +340,9 @@ int main(int argc, char** argv) {
     constexpr std::array kOfCulled{"--view-samples", "--no-culling"};
     constexpr std::array kOfTracing{"--kind", "--set", "--grid", "--bounds"};
     if (!options.play.empty()) kinds::refuse_flags_of_tracing(app, options.kind, kOfTracing);
+    for (const char* const flag : {"--loop", "--allow-incomplete"}) {
+      if (options.play.empty() && app.given(flag)) fail(Exit::usage, "{} is for --play", flag);
+    }
     kinds::refuse_flags_of_probes(app, options.kind, kOfProbes);
     // Clients do not wait for a warm-up that nobody sees.
     auto& warmup = options.kind.own.at("warmup");

@@ -22,13 +22,14 @@ constexpr double kPoll = 1e-3;
 constexpr double kLogBurst = 500, kLogRate = 10;  ///< lines, and lines per second
 constexpr std::uintptr_t kNoConnection = 0;
 
-/// The flags that raise the limit of this reason.
-const char* limits_of(Reason reason) {
+/// The flags that raise the limit of this reason. `lossy`: a texture loses bits by its backend.
+const char* limits_of(Reason reason, bool lossy) {
   switch (reason) {
     case Reason::full:
       return " (--max-clients)";
     case Reason::unicast_full:
-      return " (--max-unicast, --max-unicast-per-address)";
+      return lossy ? " (lossy textures are for clients with --delivery shared)"
+                   : " (--max-unicast, --max-unicast-per-address)";
     default:
       return "";
   }
@@ -161,7 +162,7 @@ void Service::open(Link link) {
     }
     ++dropped_[Reason::full];
     log("{} turned away: {}{}", Net::address_of(link), to_string(Reason::full),
-        limits_of(Reason::full));
+        limits_of(Reason::full, false));
     return net_.close(link);
   }
   Net::set_tag(link, *id);
@@ -234,9 +235,12 @@ void Service::take(const ServerEvent& event) {
       if (event.reason == Reason::left) {
         log("{} left {}", connection.address, account(event.connection, true));
       } else {
+        const bool lossy = std::ranges::any_of(
+            volumes_, [](const FeedVolume& volume) { return !volume.quantisers.empty(); });
         log("{} {}: {}{}, {}", connection.address,
             event.reason == Reason::shutdown ? "let go" : "dropped", to_string(event.reason),
-            limits_of(event.reason), account(event.connection, event.reason != Reason::replaced));
+            limits_of(event.reason, lossy),
+            account(event.connection, event.reason != Reason::replaced));
       }
       connection.closing = true;
       send(event.connection);
