@@ -55,6 +55,8 @@ const Names kOthers = {
     "--dry-run",
 };
 
+fs::path root() { return fs::path(GICODEC_DOCS_DIR).parent_path(); }
+
 std::string read(const fs::path& path) {
   std::ifstream file(path);
   return {std::istreambuf_iterator<char>(file), {}};
@@ -175,7 +177,7 @@ class Tree {
     }
   }
 
-  fs::path root_ = GICODEC_ROOT_DIR;
+  fs::path root_ = root();
   Names files_, called_, flags_;
   std::vector<Source> sources_;
 };
@@ -252,9 +254,8 @@ std::vector<std::string> missing(const Tree& tree, const std::string& text) {
 }
 
 std::vector<fs::path> pages() {
-  const fs::path root = GICODEC_ROOT_DIR;
-  std::vector<fs::path> all = {root / "README.md", root / "HACKING.md"};
-  for (const auto& entry : fs::directory_iterator(root / "docs")) {
+  std::vector<fs::path> all = {root() / "README.md", root() / "HACKING.md"};
+  for (const auto& entry : fs::directory_iterator(GICODEC_DOCS_DIR)) {
     if (entry.path().extension() == ".md") all.push_back(entry.path());
   }
   return all;
