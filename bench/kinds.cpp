@@ -16,7 +16,7 @@ int main(int argc, char** argv) {
                        bench::add_irradiance_vectors},
       bench::KindBench{"photons", "Beside zstd and meshoptimizer", bench::add_photons},
       bench::KindBench{"voxels", "Beside zstd and OpenVDB", bench::add_voxels}};
-  tools::Command app{"Measures kinds of payload: bytes beside their peers, and pictures.", "kinds"};
+  tools::Command app{"Measures kinds: bytes beside their peers, and pictures.", "kinds"};
   bench::Measurement chosen;
   app.require_command();
   for (const bench::KindBench& kind : kKinds) {

@@ -15,6 +15,13 @@ int main() {
   auto encoder = VolumeEncoder::create(*volume);
   auto decoder = VolumeDecoder::create(*volume);
   if (!encoder || !decoder) return 1;
+  // The same packets also go into a container.
+  std::FILE* const file = std::tmpfile();
+  ContainerDescription description;
+  if (file == nullptr || add_volume(description, "batches", *volume) != Status::ok) return 1;
+  FileSink sink(file);
+  auto container = ContainerWriter::create(sink, description);
+  if (!container) return 1;
   std::vector<std::byte> server[3], client[3];
   for (std::size_t t = 0; t < 3; ++t) {
     server[t].resize(texture_bytes(volume->groups[0].textures[t].desc));
@@ -35,6 +42,9 @@ int main() {
     const auto packets = encoder->encode(views);  // Finds what changed; one packet a texture.
     if (!packets) return 1;
     Status status = decoder->decode(*packets);
+    for (const Packet& packet : *packets) {
+      if (status == Status::ok) status = container->add(update, packet);
+    }
     for (std::uint8_t t = 0; t < 3 && status == Status::ok; ++t) {
       status = decoder->read(t, TextureView{client[t]}, decoder->changed(t));
     }
@@ -46,5 +56,7 @@ int main() {
                 decoder->changed(kPhotons).size(), (*packets)[kPhotons].size(),
                 client[kPhotons] == server[kPhotons] ? "equal" : "DIFFERENT");
   }
+  if (container->finish() != Status::ok) return 1;
+  std::fclose(file);
   return client[kCounts] == server[kCounts] && client[kPhotons] == server[kPhotons] ? 0 : 1;
 }

@@ -1,4 +1,4 @@
-// Every kind of payload with contents and losses that the input chooses.
+// Volumes of every kind with contents and losses that the input chooses.
 #include "input.h"
 #include "payload_conformance.h"
 

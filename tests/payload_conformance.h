@@ -1,5 +1,5 @@
-// What every kind of payload has to bear, as bodies that tests and fuzzers share: each answers with
-// what went wrong, or nothing.
+// What volumes of every kind have to bear, as bodies that tests and fuzzers share: each answers
+// with what went wrong, or nothing.
 #pragma once
 
 #include <gicodec/streaming.h>

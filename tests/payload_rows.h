@@ -1,4 +1,4 @@
-// One row per kind of payload: what the conformance test and its fuzz target go through.
+// One row per kind: what the conformance test and its fuzz target go through.
 #pragma once
 
 #include <gicodec/ao_points.h>

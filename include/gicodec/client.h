@@ -107,8 +107,9 @@ struct ClientStatistics {
   std::uint64_t proofs = 0, failed_proofs = 0;  ///< states compared with the server's
 };
 
-/// One thread at a time. Safe on hostile messages: each is applied, or leaves the last consistent
-/// frame as before.
+/// One thread at a time. Safe on hostile messages. An update that cannot be applied in full may
+/// leave frame() half changed: it is not consistent() until the server has sent what is missing.
+/// ClientThread::latest() stays the last consistent frame.
 class Client {
  public:
   /// invalid_settings (threads, isa); invalid_argument (other options out of range).

@@ -47,7 +47,8 @@ class MemorySource final : public Source {
   std::size_t position_ = 0;
 };
 
-/// Reads from a stdio stream, which must not be null. Does not close it. The file may grow.
+/// Reads from a stdio stream, which must not be null. Does not close it. Can seek only in a file
+/// that stands at its beginning when this is created, and is not empty. The file may grow.
 class FileSource final : public Source {
  public:
   explicit FileSource(std::FILE* file) noexcept;

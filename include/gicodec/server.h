@@ -93,7 +93,9 @@ struct ServerOptions {
   /// acknowledges all without delay, so that a volume arrives in several updates. Choose more
   /// where links are known to be fast.
   std::uint64_t first_update_bytes = 12 << 10;
-  bool proofs = false;  ///< send a hash of each stream's state, for clients to check
+  /// Send a hash of each stream's state, for clients to check. Messages are then not shared among
+  /// clients.
+  bool proofs = false;
   ServerAccess access = {};
   ServerLimits limits = {};
   ServerTimeouts timeouts = {};
@@ -157,9 +159,10 @@ class Server {
                                                  std::span<const StreamedTexture> textures = {});
   /// Clients drop the volume with the next update. A later volume may get its number.
   Status remove_volume(std::uint16_t volume);
-  /// Sets a texture's contents from the next update on; reads the view during the call. After a
-  /// texture that holds the presence of others, publish these others before the next update, which
-  /// otherwise answers presence_missing. Errors: view_too_small, presence_invalid.
+  /// Sets a texture's contents from the next update on; reads the view during the call. `texture`:
+  /// its number, which counts through the groups of the volume. After a texture that holds the
+  /// presence of others, publish these others before the next update, which otherwise answers
+  /// presence_missing. Errors: view_too_small, presence_invalid.
   Status publish(std::uint16_t volume, std::uint8_t texture, ConstTextureView view);
   /// The same if only the listed blocks, in any order, may have changed. Reads only these, and
   /// blocks that were never read, entered by scrolling, or have another presence. Errors also:

@@ -52,7 +52,7 @@ enum class [[nodiscard]] Status : std::uint16_t{
 
     // 2xx: resources.
     out_of_memory = 200,   ///< an allocation failed
-    limit_exceeded = 201,  ///< more than DecodeLimits, a backend or the format allows
+    limit_exceeded = 201,  ///< a limit of the caller, a backend or the format is exceeded
     cancelled = 202,       ///< the caller cancelled the call
 
     // 3xx: input that breaks the format.
@@ -74,7 +74,7 @@ enum class [[nodiscard]] Status : std::uint16_t{
     io_failed = 502,            ///< a Source or Sink reported an error
 };
 
-/// A short English sentence without a full stop; static storage.
+/// A short English sentence without a full stop; static storage, a zero follows the text.
 [[nodiscard]] std::string_view to_string(Status status) noexcept;
 
 /// A value, or the status that says why there is none.

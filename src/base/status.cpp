@@ -30,7 +30,7 @@ std::string_view to_string(Status status) noexcept {
     case Status::unsupported_shape:
       return "the backend cannot code blocks of this shape; zstd, lz4 and raw can";
     case Status::unknown_kind:
-      return "the kind of payload is not known";
+      return "no kind of that number or name is built in or was given";
     case Status::unknown_volume:
       return "there is no volume of that number";
     case Status::unknown_texture:
@@ -69,7 +69,7 @@ std::string_view to_string(Status status) noexcept {
     case Status::out_of_memory:
       return "out of memory";
     case Status::limit_exceeded:
-      return "the input asks for more than the decode limits allow";
+      return "a limit of the caller, a backend or the format is exceeded";
     case Status::cancelled:
       return "the call was cancelled";
     case Status::truncated:

@@ -278,7 +278,7 @@ std::string_view to_string(Reason reason) noexcept {
     case Reason::version:
       return "it speaks another protocol version";
     case Reason::token:
-      return "its token is wrong";
+      return "the token is wrong";
     case Reason::full:
       return "no more clients are taken";
     case Reason::malformed:

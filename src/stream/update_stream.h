@@ -1,5 +1,5 @@
 // A chain of packets for some blocks of a texture's history: an encoder's or a client's unicast
-// chain for the repeats_all volume, or a shared one for a region. Knows what was sent last, to
+// chain for the whole volume, or a shared one for a region. Knows what was sent last, to
 // compare with, to predict from, and to go back to.
 #pragma once
 

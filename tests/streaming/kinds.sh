@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# A kind of payload other than probes through everything: traced live to clients of both deliveries,
+# A kind other than probes through everything: traced live to clients of both deliveries,
 # under loss and a small budget; recorded, played again, traced into a container, listed, verified,
 # previewed and drawn.
 #   kinds.sh BIN GICODEC GI-TRACE GI-RENDER BAD-PEER KIND SETTINGS...

@@ -45,7 +45,7 @@ unusable() {
   for load in "--updates 1" "--simulate 2 --updates 1"; do
     start unusable "$bin/gi-client" --connect $address $load
     ends 3 $last unusable
-    says unusable "cannot be used: the kind of payload is not known; .* a newer one may"
+    says unusable "cannot be used: no kind of that number or name is built in or was given; .* a newer one may"
   done
 }
 

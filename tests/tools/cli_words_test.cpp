@@ -55,6 +55,11 @@ TEST_F(CliWords, ValuesThatAreNoCodes) {
   write_dump(program_.path("half.exr"), dump.info, dump.texels, Existing::replace);
   program_.expect_failure(Exit::bad_input, {"encode", "-o", "x.gic", "half.exr"},
                           {"is not n/1023", "--vk-format R16G16B16A16_SFLOAT"});
+  program_.expect_failure(Exit::bad_input,
+                          {"encode", "-o", "x.gic", "--vk-format", "B10G11R11_UFLOAT_PACK32",
+                           "--channels", "R=R,G=G,B=B", "half.exr"},
+                          {"-bit code; files of this format hold codes 0 to ",
+                           "; --vk-format R16G16B16A16_SFLOAT keeps such values as they are"});
   program_.succeed({"encode", "-o", "x.gic", "--vk-format", "R16G16B16A16_SFLOAT", "half.exr"});
   program_.succeed({"verify", "x.gic", "half.exr"});
 
@@ -67,6 +72,13 @@ TEST_F(CliWords, ValuesThatAreNoCodes) {
       {"c.png: holds 8 bits per channel", "10 of A2R10G10B10", "--vk-format R8G8B8A8_UNORM"});
   program_.succeed(
       {"encode", "-o", "y.gic", "--grid", "4x2x3", "--vk-format", "R8G8B8A8_UNORM", "c.png"});
+  program_.expect_failure(
+      Exit::bad_input, {"encode", "-o", "z.gic", "--vk-format", "R8G8B8A8_UNORM", "c.png"},
+      {"no attribute gicodec:grid; use --grid for probes, or --block 8x8x1 for another texture"});
+  program_.expect_failure(
+      Exit::bad_input,
+      {"encode", "-o", "z.gic", "--grid", "3x2x3", "--vk-format", "R8G8B8A8_UNORM", "c.png"},
+      {"80 texels of width do not make the 6 = 3·2 columns of tiling atlas_xy_z"});
   program_.succeed({"decode", "y.gic", "-o", "back"});
   program_.succeed(
       {"compare", "--grid", "4x2x3", "--vk-format", "R8G8B8A8_UNORM", "c.png", "back/c.exr"});

@@ -101,7 +101,8 @@ TEST_F(DumpError, IntegerBeyondTheCodes) {
   picture.odd_channel = 'A';
   picture.odd_sample = 4;
   picture.write(path_);
-  expect_error({"channel A", "texel (5, 9)", "probe 2", "4 is no 2-bit code"});
+  expect_error({"channel A", "texel (5, 9)", "probe 2",
+                "4 is no 2-bit code; files of this format hold codes 0 to 3"});
 }
 
 TEST_F(DumpError, FloatThatIsNoCode) {

@@ -243,15 +243,17 @@ void fail_sample(const DumpInfo& info, const Component& component, SampleType ty
   constexpr std::array<const char*, 3> kFloats = {"R32_SFLOAT", "R32G32_SFLOAT",
                                                   "R32G32B32A32_SFLOAT"};
   const std::string value = sample_text(type, sample);
-  if (component.type == ComponentType::unorm && type != SampleType::uint32) {
-    fail(Exit::bad_input,
-         "{}: channel {}, {}: {} is not n/{}, so it is no {}-bit code; --vk-format {} keeps such "
-         "values as they are",
-         path, letter(component), place, value, max_code(component), component.bits,
-         (type == SampleType::half ? kHalves : kFloats)[index]);
-  }
-  fail(Exit::bad_input, "{}: channel {}, {}: {} is no {}-bit code, which go from 0 to {}", path,
-       letter(component), place, value, component.bits, max_code(component));
+  const std::string fault =
+      component.type == ComponentType::unorm && type != SampleType::uint32
+          ? fmt::format("is not n/{}, so it is no {}-bit code", max_code(component), component.bits)
+          : fmt::format("is no {}-bit code; files of this format hold codes 0 to {}",
+                        component.bits, max_code(component));
+  const std::string cure = type == SampleType::uint32
+                               ? ""
+                               : fmt::format("; --vk-format {} keeps such values as they are",
+                                             (type == SampleType::half ? kHalves : kFloats)[index]);
+  fail(Exit::bad_input, "{}: channel {}, {}: {} {}{}", path, letter(component), place, value, fault,
+       cure);
 }
 
 }  // namespace gicodec::tools

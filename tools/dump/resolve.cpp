@@ -281,7 +281,7 @@ class Resolver {
     const Attribute* found = attribute(kGrid, "v3i");
     if (found == nullptr) {
       fail(Exit::bad_input,
-           "{}: no attribute {}; use --grid, or --extent for a texture that is none of probes",
+           "{}: no attribute {}; use --grid for probes, or --block 8x8x1 for another texture",
            path_, kGrid);
     }
     std::string text = found->value;
@@ -341,6 +341,24 @@ class Resolver {
     return value;
   }
 
+  /// "72 = 12·6 columns", by the axes that share them.
+  [[nodiscard]] std::string columns_text(std::uint32_t columns) const {
+    const Grid& grid = info_.desc.grid;
+    const auto product = [&](std::uint32_t a, std::uint32_t b) {
+      return fmt::format("{} = {}·{} columns", columns, a, b);
+    };
+    switch (info_.desc.layout.tiling) {
+      case Tiling::atlas_xy_z:
+        return product(grid.x, grid.y);
+      case Tiling::atlas_xz_y:
+        return product(grid.x, grid.z);
+      case Tiling::atlas_yz_x:
+        return product(grid.y, grid.z);
+      default:
+        return fmt::format("{} columns", columns);
+    }
+  }
+
   std::uint8_t core_from_size(std::uint32_t width) {
     TextureDesc unit = info_.desc;
     unit.block = {};
@@ -351,9 +369,9 @@ class Resolver {
     if (width % columns != 0 || side <= 2U * info_.desc.guard_band ||
         side - 2U * info_.desc.guard_band > kMaxBlockSide) {
       fail(Exit::bad_input,
-           "{}: {} texels of width do not make {} blocks; check --grid, --tiling "
-           "and --core",
-           path_, width, columns);
+           "{}: {} texels of width do not make the {} of tiling {}; check --grid, --tiling and "
+           "--core",
+           path_, width, columns_text(columns), to_string(unit.layout.tiling));
     }
     return static_cast<std::uint8_t>(side - 2U * info_.desc.guard_band);
   }

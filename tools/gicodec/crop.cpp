@@ -152,6 +152,9 @@ Exit crop(const CropOptions& options, const Cli& cli) {
                  overwrite_if(options.overwrite));
     }
   }
+  if (!cli.quiet) {
+    remark(fmt::format("{}: {} file{} written", options.output, files, files == 1 ? "" : "s"));
+  }
   return Exit::ok;
 }
 

@@ -97,7 +97,13 @@ std::size_t chosen(const ContainerInput& input, const PreviewOptions& options) {
   fail(Exit::bad_input, "{}: {}", input.path(), input.textures()[*found].no_dump);
 }
 
-Dump load_from_container(const PreviewOptions& options, bool quiet) {
+/// A dump, and what it is in words.
+struct Loaded {
+  Dump dump;
+  std::string what;
+};
+
+Loaded load_from_container(const PreviewOptions& options, bool quiet) {
   ContainerInput input(options.input, options.decoder);
   note_missing(input, options.allow_incomplete);
   const std::size_t id = chosen(input, options);
@@ -111,7 +117,8 @@ Dump load_from_container(const PreviewOptions& options, bool quiet) {
     if (!input.bytes())
       note_missing(input, options.allow_incomplete);  // a pipe's end is known only now
     if (const std::string loss = texture->loss(); !loss.empty() && !quiet) remark(loss);
-    return {texture->info_at(input.frame()), input.texels(id)};
+    return {{texture->info_at(input.frame()), input.texels(id)},
+            fmt::format("texture {}, frame {}", texture->name, input.frame())};
   }
   if (options.frame) {
     const std::string there = input.cut_off() ? input.missing() : input.frames_there();
@@ -121,7 +128,7 @@ Dump load_from_container(const PreviewOptions& options, bool quiet) {
   fail(Exit::bad_input, "{}: has no frame of texture {}", input.path(), texture->name);
 }
 
-Dump load(const PreviewOptions& options, bool quiet) {
+Loaded load(const PreviewOptions& options, bool quiet) {
   if (options.input == "-" || is_container_file(options.input)) {
     return load_from_container(options, quiet);
   }
@@ -132,7 +139,8 @@ Dump load(const PreviewOptions& options, bool quiet) {
   }
   const auto sequences = group_sequences({options.input});
   check_names(options.geometry, sequences);
-  return read_dump(options.input, hints_for(options.geometry, sequences.front().name));
+  return {read_dump(options.input, hints_for(options.geometry, sequences.front().name)),
+          options.input};
 }
 
 Exit preview(const PreviewOptions& options, const Cli& cli) {
@@ -140,9 +148,10 @@ Exit preview(const PreviewOptions& options, const Cli& cli) {
   InputFiles inputs;
   inputs.add(options.input == "-" ? "/dev/stdin" : options.input);
   check_output(options.output, inputs, overwrite_if(options.overwrite));
-  const Dump dump = load(options, cli.quiet);
+  const Loaded loaded = load(options, cli.quiet);
   check_interrupt();
-  write_preview(options.output, dump, options.tuning, overwrite_if(options.overwrite));
+  write_preview(options.output, loaded.dump, options.tuning, overwrite_if(options.overwrite));
+  if (!cli.quiet) remark(fmt::format("{}: {} written", options.output, loaded.what));
   return Exit::ok;
 }
 

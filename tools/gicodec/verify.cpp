@@ -122,14 +122,13 @@ void add_left_over(const std::vector<Sequence>& sequences, Report& report,
   for (const Sequence& sequence : sequences) {
     for (const FrameFile& file : sequence.frames) {
       if (report.unseen.count({sequence.name, file.frame}) == 0) continue;
-      report.add(
-          {sequence.name,
-           file.frame,
-           file.path,
-           fmt::format("frame {} of texture {} is not in {}", file.frame, sequence.name, path),
-           {},
-           {},
-           {}});
+      report.add({sequence.name,
+                  file.frame,
+                  file.path,
+                  fmt::format("{} has no such frame of texture {}", path, sequence.name),
+                  {},
+                  {},
+                  {}});
     }
   }
 }

@@ -14,7 +14,7 @@ void add_kind_flags(tools::Command& app, KindFlags& flags) {
   std::vector<std::string> names;
   for (const TracedKind& kind : traced_kinds()) names.emplace_back(kind.name);
   const std::string group = "Kinds";
-  app.add_option("--kind", flags.kind, "Kind of payload")
+  app.add_option("--kind", flags.kind, "Kind of volume")
       ->allow(tools::one_of(names))
       ->show_default()
       ->group(group);
