@@ -72,7 +72,7 @@ for name in sys.argv[2:]:
     for line in open(name):
         json.loads(line)
 END
-  [ "$(ls textures | sed 's/\.[0-9]*\.png$//' | sort -u | tr '\n' ' ')" = '=a,%1B[2J.%2E%2E =a,%1B[2J.sky%2Flight,"%0A ' ] ||
+  [ "$(ls textures | sed 's/\.[0-9]*\.png$//' | sort -u | tr '\n' ' ')" = '%3Da%2C%1B%5B2J.%2E%2E %3Da%2C%1B%5B2J.sky%2Flight%2C%22%0A ' ] ||
     failed "textures became $(ls textures)"
 }
 

@@ -10,9 +10,9 @@ namespace {
 
 constexpr std::size_t kMaxPart = 100;  ///< bytes; two parts and a number are a file's name
 
-/// Without dots, which stand between parts.
+/// Without dots, which stand between parts, and without what shells and other systems read.
 std::string file_name_part(const std::string& name) {
-  return tools::as_file_name(name, kMaxPart, ".");
+  return tools::as_file_name(name, kMaxPart, " !\"#$&'()*+,.:;<=>?@[\\]^`{|}");
 }
 
 }  // namespace
