@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+#include <string_view>
+
 namespace gicodec::ddgi {
 namespace {
 
@@ -22,6 +25,15 @@ TEST(SceneId, ChangesWithTheTrianglesAndNothingElse) {
   for (const Scene& other : {moved, bent, dynamic}) {
     EXPECT_NE(scene_id("tomb", other).geometry, id.geometry);
   }
+}
+
+// Whatever the compiler and its options: ends that do not agree in the hash cannot talk.
+TEST(SceneId, BuiltInScenesAreTheSameFromEachCompiler) {
+  const std::map<std::string_view, std::uint64_t> golden{
+      {"tomb", 0x3096adac2890affc}, {"villa", 0x30a3c937b278c1ce}, {"street", 0x8229f5c8d85073eb}};
+  EXPECT_EQ(built_in_scenes().size(), golden.size());
+  for (const SceneInfo& info : built_in_scenes())
+    EXPECT_EQ(scene_id("", info.make()).geometry, golden.at(info.name)) << info.name;
 }
 
 TEST(SceneId, NamesAreTextThatAWelcomeTakes) {

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Recordings and servers of others: kinds that are not known, as many volumes as there may be.
 . "$(dirname "$0")/common.sh"
-odd_containers=$2 odd_server=$3
+odd_containers=$2 odd_server=$3 render=$4
 "$odd_containers" || failed "odd_containers"
 
 # play NAME OPTIONS...: a server of a recording; its process in $server, its address in $address.
@@ -47,6 +47,33 @@ unusable() {
     ends 3 $last unusable
     says unusable "cannot be used: no kind of that number or name is built in or was given; .* a newer one may"
   done
+}
+
+# Whatever volumes and textures are called, they are played, recorded, drawn, and in tables.
+any_name() {
+  local server address
+  play names --play ../names.gic --loop --proofs --rate 20 --log-updates log.csv --stats-file stats.jsonl
+  start client "$bin/gi-client" --connect $address --updates 5 --expect-proofs --record record.gic \
+    -o textures --frames 1
+  ends 0 $last client
+  "$bin/gi-client" --connect $address --updates 2 --stats json >client.json 2>/dev/null || failed "no summary"
+  kill $server
+  ends 0 $server names
+  start again "$bin/gi-server" --play record.gic --updates 1
+  ends 0 $last again
+  start render "$render" --gltf $room --stream ../names.gic --size 16x9 --samples 1 -o drawn.png
+  ends 0 $last render
+  python3 - log.csv stats.jsonl client.json <<'END' || failed "tables cannot be read"
+import csv, json, sys
+head, *rows = csv.reader(open(sys.argv[1], newline=""))
+assert head[8:] == ['=a,\\x1b[2J.sky/light,"\\x0a', "=a,\\x1b[2J..."], head
+assert rows and all(len(row) == len(head) for row in rows), rows
+for name in sys.argv[2:]:
+    for line in open(name):
+        json.loads(line)
+END
+  [ "$(ls textures | sed 's/\.[0-9]*\.png$//' | sort -u | tr '\n' ' ')" = '%3Da%2C%1B%5B2J.%2E%2E %3Da%2C%1B%5B2J.sky%2Flight%2C%22%0A ' ] ||
+    failed "textures became $(ls textures)"
 }
 
 # Subscribing to all volumes at once is not too much, whatever the delivery.
@@ -139,5 +166,5 @@ still() {
 # all_are_sent: there are three clients, and each was sent some updates over its connection.
 all_are_sent() { "$bin/gi-server" --ask control list | awk 'NR > 1 {++all; n += $6 >= 10} END {exit !(all == 3 && n == 3)}'; }
 
-beside still many_volumes fast unknown_kind unusable too_many replaced same
+beside still any_name many_volumes fast unknown_kind unusable too_many replaced same
 finish

@@ -3,6 +3,7 @@
 //   unknown.gic  a volume of an unknown kind before one of probes
 //   alone.gic    nothing but a volume of an unknown kind
 //   many.gic     256 volumes of the same name
+//   names.gic    probes whose volume and textures have names that no file can have
 #include "dump/error.h"
 #include "tools/unknown_volume.h"
 
@@ -58,7 +59,7 @@ void write(const std::string& path, const ContainerDescription& description) {
 
 int main() {
   try {
-    ContainerDescription probes, unknown, alone, many, great;
+    ContainerDescription probes, unknown, alone, many, names, great;
     add_probes(probes, "room", kProbe);
     write("probes.gic", probes);
     add_unknown(unknown);
@@ -70,6 +71,10 @@ int main() {
       add_probes(many, "same", probe_texture(Format::R16G16_SFLOAT, {1, 1, 1}, 4));
     }
     write("many.gic", many);
+    const TextureDesc color = probe_texture(Format::A2B10G10R10_UNORM_PACK32, {2, 2, 2}, 8);
+    const NamedTexture odd[] = {{"sky/light,\"\n", color, {}, {}}, {"..", kProbe, {}, {}}};
+    check(add_volume(names, "=a,\x1b[2J", take(probe_volume(odd), "names")), "names");
+    write("names.gic", names);
     add_probes(great, "hall", probe_texture(Format::R16G16_SFLOAT, {32, 8, 32}, 2));
     write("great.gic", great);
   } catch (const tools::Error& error) {

@@ -2,12 +2,16 @@
 #include "stream/transport.h"
 #include "dump/error.h"
 #include "stream/enet.h"
+#include "stream/tcp.h"
 #include "stream/tls.h"
 #include "stream/web_link.h"
 #include "stream/web_page.h"
 
 #include <enet/enet.h>
 #include <gtest/gtest.h>
+#include <netdb.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -30,6 +34,29 @@ TEST(Transport, ReadsAddressesAndWritesThemAgain) {
                            "[host]:80", "wss://", "wss://host", "http://host:80",
                            "ws://example.org:80", "ws://127.example.org:80", "ws://0.0.0.0:80"}) {
     EXPECT_THROW(static_cast<void>(parse_server(text, "--connect")), tools::Error) << text;
+  }
+}
+
+TEST(Tcp, WhoIsOnThisMachine) {
+  EXPECT_FALSE(peer_is_here(-1));
+  for (const auto& [text, here] : {std::pair("127.0.0.1", true),
+                                   {"127.9.9.9", true},
+                                   {"::1", true},
+                                   {"::ffff:127.0.0.1", true},
+                                   {"192.0.2.1", false},
+                                   {"2001:db8::1", false},
+                                   {"::ffff:192.0.2.1", false}}) {
+    addrinfo wanted{};
+    wanted.ai_flags = AI_NUMERICHOST;
+    wanted.ai_socktype = SOCK_DGRAM;  // which connects without a packet
+    addrinfo* to = nullptr;
+    ASSERT_EQ(getaddrinfo(text, "9", &wanted, &to), 0) << text;
+    const int descriptor = socket(to->ai_family, SOCK_DGRAM, 0);
+    // Of a machine without networks others cannot be reached.
+    const bool reached = connect(descriptor, to->ai_addr, to->ai_addrlen) == 0;
+    EXPECT_EQ(peer_is_here(descriptor), reached && here) << text;
+    close(descriptor);
+    freeaddrinfo(to);
   }
 }
 

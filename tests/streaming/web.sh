@@ -130,5 +130,53 @@ seen() {
 seen_in_clear() { seen ws 3 --insecure-web; }
 seen_encrypted() { seen wss 0 --certificate ../server.pem --key ../server.key; }
 
-beside harm_by_cut harm_by_flip harm_by_replay both other_name expired seen_in_clear seen_encrypted
+# Who answers with a redirect is not followed, not even where another server is ready: its user did not choose
+# that one, and in clear it may be another machine. The same holds for a proxy of the environment.
+redirected() {
+  local kind=$1 server from code where trusted=()
+  [ $kind = ws ] || trusted=(--ca ../authority.pem)
+  echo "open sesame, says nobody" >token
+  chmod 600 token
+  if [ $kind = ws ]; then
+    server there --listen-web 127.0.0.1:0 --insecure-web --token-file token
+  else
+    server there --listen-web 127.0.0.1:0 --certificate ../server.pem --key ../server.key --token-file token
+  fi
+  server=$last
+  start from python3 "$here/web_redirect.py" from.port "127.0.0.1:$port" \
+    $([ $kind = ws ] || echo ../server.pem ../server.key)
+  from=$last
+  for code in 301 302 303 307 308; do
+    for where in "\"[a-z]*://127.0.0.1:$port/\"" "\"//127.0.0.1:$port/\"" '"/elsewhere"' '/\\x1b\[2J"'; do
+      start client "$bin/gi-client" --connect $kind://127.0.0.1:$(port_of from) "${trusted[@]}" $view \
+        --token-file token --updates 2 --patience 1
+      ends 4 $last "client ($code)"
+      says client "a redirect (HTTP $code) to .*$where, which is not followed"
+    done
+  done
+  start crowd "$bin/gi-client" --connect $kind://127.0.0.1:$port "${trusted[@]}" --simulate 2 --gltf $room \
+    --token-file token --updates 2
+  ends 0 $last crowd
+  grep -q "more:" from.log && failed "who redirects was sent more than a request"
+  kill $from $server
+  ends 0 $server there
+  [ "$(grep -c joined there.log)" -eq 2 ] || failed "a redirect was followed"
+}
+redirected_in_clear() { redirected ws; }
+redirected_encrypted() { redirected wss; }
+proxied() {
+  local server
+  server plain --listen-web 127.0.0.1:0 --insecure-web
+  server=$last
+  start proxy python3 "$here/web_redirect.py" proxy.port "127.0.0.1:$port"
+  start client env http_proxy=http://127.0.0.1:$(port_of proxy) "$bin/gi-client" \
+    --connect ws://127.0.0.1:$port $view --updates 2
+  ends 0 $last client
+  [ -s proxy.log ] && failed "a proxy was asked"
+  kill -TERM $server
+  ends 0 $server plain
+}
+
+beside harm_by_cut harm_by_flip harm_by_replay both other_name expired seen_in_clear seen_encrypted \
+  redirected_in_clear redirected_encrypted proxied
 finish

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 
 namespace gicodec::tools {
 namespace {
@@ -189,7 +190,12 @@ TEST_F(CliBadContainer, HostileMetadata) {
                                  "a\xc2\x9b"
                                  "31m"}) {
     write_container(path, {name, kVisDesc});
-    program_.expect_failure(Exit::bad_input, {"decode", "bad.gic", "-o", "."}, {"file name"});
+    const auto before = program_.files();
+    const std::string folder = fmt::format("in-{}", before.size());
+    program_.succeed({"decode", "bad.gic", "-o", folder, "--overwrite"});
+    EXPECT_EQ(program_.files(folder).size(), 1U) << "outside of the folder, or hidden in it";
+    std::filesystem::remove_all(program_.path(folder));
+    EXPECT_EQ(program_.files(), before);
   }
   for (const auto& [key, value] : std::vector<std::pair<std::string, std::string>>{
            {"digits", "19"},

@@ -104,7 +104,7 @@ SurfacePoint sample(const SampledMesh& sampled, std::uint32_t seed, std::uint32_
     if (left < 0) break;
   }
   const Mesh& mesh = sampled.mesh;
-  const auto [a, b, c] = mesh.triangles[triangle];
+  const std::array<std::uint32_t, 3> corners = mesh.triangles[triangle];
   Vec2 w;
   if (part.size() >= 3) {
     const float root = std::sqrt(random(3)), v = random(4) * root, u = root - v;
@@ -112,7 +112,7 @@ SurfacePoint sample(const SampledMesh& sampled, std::uint32_t seed, std::uint32_
     w = {p.x + u * (q.x - p.x) + v * (r.x - p.x), p.y + u * (q.y - p.y) + v * (r.y - p.y)};
   }
   const auto blend = [&](const std::vector<Vec3>& of) {
-    return of[a] * (1 - w.x - w.y) + of[b] * w.x + of[c] * w.y;
+    return of[corners[0]] * (1 - w.x - w.y) + of[corners[1]] * w.x + of[corners[2]] * w.y;
   };
   SurfacePoint point{blend(mesh.positions), normalize(blend(mesh.normals)),
                      normalize(doubled_area(mesh, triangle))};

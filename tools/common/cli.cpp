@@ -1,5 +1,7 @@
 #include "cli.h"
 
+#include "dump/data_text.h"
+
 #include <gicodec/threads.h>
 
 #include <unistd.h>
@@ -10,21 +12,9 @@
 #include <cstdio>
 #include <exception>
 #include <thread>
+#include <utility>
 
 namespace gicodec::tools {
-namespace {
-
-/// Makes strings UTF-8: names of files and channels may hold any bytes. Keys are the program's or a
-/// container's, and so are UTF-8.
-void make_utf8(nlohmann::ordered_json& json) {
-  if (json.is_string()) {
-    json = utf8_text(json.get_ref<const std::string&>());
-  } else if (json.is_structured()) {
-    for (auto& item : json) make_utf8(item);
-  }
-}
-
-}  // namespace
 
 void add_output_format(Command& command, std::string& format) {
   command.add_option("--format", format, "Output as text or json")
@@ -66,10 +56,7 @@ void add_isa(Command& command, Isa& isa) {
 
 void remark(const std::string& text) { print(stderr, "gicodec: {}\n", message(text)); }
 
-void print_json(nlohmann::ordered_json json) {
-  make_utf8(json);
-  write_text(stdout, printable_json(json.dump(2)) + "\n");
-}
+void print_json(nlohmann::ordered_json json) { write_json(stdout, std::move(json), 2); }
 
 Progress::Progress(std::string label, std::size_t total, const Cli& cli)
     : label_(std::move(label)), total_(total), shown_(!cli.quiet && isatty(STDERR_FILENO) != 0) {}

@@ -1,15 +1,55 @@
 #include "file_names.h"
 
 #include "dump/sequence.h"
+#include "dump/text.h"
 #include "dump/texture_file.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
 namespace gicodec::tools {
 namespace {
+
+constexpr std::size_t kLongest = 255;   ///< bytes of a file's name
+constexpr std::size_t kNumber = 10;     ///< digits of a frame's number for which there is room
+constexpr std::size_t kHash = 18;       ///< bytes of %~ and the hash
+constexpr const char* kNothing = "%-";  ///< stands for an empty text
+
+/// Bytes of the first character of `text`; 0 if a terminal does not show it as it is.
+std::size_t shown_size(std::string_view text) {
+  constexpr std::size_t kMost = 4;
+  for (std::size_t size = 1; size <= std::min(kMost, text.size()); ++size) {
+    if (printable(text.substr(0, size)) == text.substr(0, size)) return size;
+  }
+  return 0;
+}
+
+int hex_digit(char c) {
+  constexpr std::string_view kDigits = "0123456789ABCDEF";
+  return static_cast<int>(static_cast<std::ptrdiff_t>(kDigits.find(c)) & 0xFF);
+}
+
+/// The byte that "%2F..." stands for; -1 if it is no escape.
+int escaped_byte(std::string_view text) {
+  if (text.size() < 3 || text[0] != '%') return -1;
+  const int high = hex_digit(text[1]), low = hex_digit(text[2]);
+  if (high > 15 || low > 15) return -1;
+  const int byte = high * 16 + low;
+  const bool may_stay = byte > ' ' && byte < 0x7F && byte != '%' && byte != '.' && byte != '/';
+  return may_stay ? -1 : byte;
+}
+
+bool reads_as_escape(std::string_view text) {
+  return escaped_byte(text) >= 0 || text.starts_with("%~") || text.starts_with(kNothing);
+}
 
 /// File names: a number between two texts, or one name.
 struct Names {
@@ -60,7 +100,8 @@ bool has_sidecar(const StoredTexture& texture, std::string_view where) {
 }
 
 std::vector<Names> names_of(const StoredTexture& texture) {
-  const std::string before = texture.digits == 0 ? texture.name : texture.name + texture.separator;
+  const std::string stem = file_stem(texture);
+  const std::string before = texture.digits == 0 ? stem : stem + texture.separator;
   const std::string ending = texture.extension.empty() ? "" : "." + texture.extension;
   std::vector<Names> names{{before, texture.digits, ending}};
   if (image_kind("x" + ending) != ImageKind::raw) return names;
@@ -72,6 +113,48 @@ std::vector<Names> names_of(const StoredTexture& texture) {
 }
 
 }  // namespace
+
+std::string as_file_name(std::string_view text, std::size_t most, std::string_view also) {
+  if (text.empty()) return kNothing;
+  std::string part;
+  std::size_t end = 0;  // where it may be cut
+  for (std::string_view rest = text; !rest.empty();) {
+    if (part.size() + kHash <= most) end = part.size();
+    const std::size_t shown = shown_size(rest);
+    const char first = rest[0];
+    const bool hides = part.empty() && first == '.';
+    if (shown == 0 || first == '/' || hides || also.find(first) != std::string_view::npos ||
+        reads_as_escape(rest)) {
+      part += fmt::format("%{:02X}", static_cast<unsigned char>(first));
+      rest.remove_prefix(1);
+    } else {
+      part += rest.substr(0, shown);
+      rest.remove_prefix(shown);
+    }
+  }
+  if (part.size() <= most) return part;
+  return fmt::format("{}%~{:016x}", part.substr(0, end), XXH3_64bits(text.data(), text.size()));
+}
+
+std::string from_file_name(const std::string& part) {
+  std::string text;
+  for (std::size_t i = 0; i < part.size(); ++i) {
+    const int byte = escaped_byte(std::string_view(part).substr(i));
+    text += byte < 0 ? part[i] : static_cast<char>(byte);
+    if (byte >= 0) i += 2;
+  }
+  const bool written = is_utf8(text) && as_file_name(text, part.size()) == part;
+  return written ? text : part;
+}
+
+std::string file_stem(const StoredTexture& texture) {
+  std::size_t rest = texture.extension.empty() ? 0 : 1 + texture.extension.size();
+  if (texture.digits > 0) {
+    const std::size_t digits = texture.digits;
+    rest += texture.separator.size() + (texture.made_of_files ? digits : std::max(digits, kNumber));
+  }
+  return as_file_name(texture.name, kLongest - rest);
+}
 
 bool names_meet(const StoredTexture& a, const StoredTexture& b) {
   const auto others = names_of(b);

@@ -2,6 +2,7 @@
 
 #include "dump/error.h"
 #include "dump/text.h"
+#include "file_names.h"
 #include "volume_words.h"
 
 #include <algorithm>
@@ -182,7 +183,7 @@ DumpInfo StoredTexture::decoded_info(std::uint64_t frame) const {
 }
 
 std::string StoredTexture::file_name(std::uint64_t frame) const {
-  return frame_file_name(name, digits, frame, extension, separator);
+  return frame_file_name(file_stem(*this), digits, frame, extension, separator);
 }
 
 std::string StoredTexture::lacks() const {
@@ -198,7 +199,7 @@ std::string StoredTexture::loss() const {
 
 StoredTexture inspect(const Sequence& sequence, const Hints& hints) {
   StoredTexture texture;
-  texture.name = sequence.name;
+  texture.name = from_file_name(sequence.name);
   texture.made_of_files = true;
   texture.digits = sequence.digits;
   texture.extension = written_extension(sequence);
@@ -277,9 +278,6 @@ bool is_file_name(const std::string& name) {
 StoredTexture from_entry(const TextureEntry& entry, const std::string& path) {
   StoredTexture texture;
   texture.name = entry.name;
-  if (!is_file_name(entry.name)) {
-    fail(Exit::bad_input, "{}: a texture's name cannot be a file name", path);
-  }
   const std::string where = fmt::format("{}: texture {}", path, entry.name);
   TextureDesc desc = entry.desc;
   desc.layout = entry.desc.layout.tiling;

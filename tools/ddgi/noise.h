@@ -18,7 +18,8 @@ namespace gicodec::ddgi {
   return static_cast<float>(h >> 8) * (1.0F / 16777216.0F);
 }
 
-/// A stream of numbers in [0, 1) for a seed.
+/// A stream of numbers in [0, 1) for a seed. Never draw two of them in the arguments of one call:
+/// compilers differ in which they evaluate first. Lists in braces are evaluated in order.
 class Random {
  public:
   explicit constexpr Random(std::uint32_t seed) : seed_(seed) {}

@@ -162,9 +162,10 @@ void add_tree(Town& town, float side, float z, std::uint32_t seed) {
       {{0, 0}, {0.3F, 0}, {0.2F, 0.6F}, {0.16F, 2}, {0.13F, 3.4F}, {0, 3.6F}}};
   town.trunk.at(foot).lathe(trunk, 20);
   for (std::uint32_t i = 0; i < 5; ++i) {
+    const float radius = random.in(0.8F, 1.25F);
     town.leaf.at(foot).sphere(
-        {random.in(-0.9F, 0.9F), random.in(3.4F, 5.2F), random.in(-0.9F, 0.9F)},
-        random.in(0.8F, 1.25F), 28, 0.8F, seed * 8 + i);
+        {random.in(-0.9F, 0.9F), random.in(3.4F, 5.2F), random.in(-0.9F, 0.9F)}, radius, 28, 0.8F,
+        seed * 8 + i);
   }
 }
 

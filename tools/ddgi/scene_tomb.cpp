@@ -186,7 +186,8 @@ Scene make_tomb() {
   Random random(5);
   for (int i = 0; i < 14; ++i) {
     const float side = i % 2 ? 1.0F : -1.0F;
-    add_vase(clay, {side * random.in(10.2F, 12.4F), 0, random.in(-12, 12)}, random.in(0.7F, 1.3F));
+    const float size = random.in(0.7F, 1.3F);
+    add_vase(clay, {side * random.in(10.2F, 12.4F), 0, random.in(-12, 12)}, size);
   }
   const std::array<Vec3, 4> torches{
       {{-3.4F, 0, -4.2F}, {3.4F, 0, -4.2F}, {-6.8F, 0, 10.8F}, {6.8F, 0, 10.8F}}};

@@ -132,10 +132,11 @@ void add_vase(MeshBuilder& clay, MeshBuilder& leaf, Vec3 at, float size, std::ui
   clay.at(at).lathe(profile, 28);
   Random random(seed);
   for (int i = 0; i < 6; ++i) {
+    const float radius = random.in(0.28F, 0.45F) * size;
     leaf.at(at + Vec3{0, 1.5F * size, 0})
         .sphere({random.in(-0.35F, 0.35F) * size, random.in(-0.1F, 0.5F) * size,
                  random.in(-0.35F, 0.35F) * size},
-                random.in(0.28F, 0.45F) * size, 16, 0.5F, seed + static_cast<std::uint32_t>(i));
+                radius, 16, 0.5F, seed + static_cast<std::uint32_t>(i));
   }
 }
 

@@ -5,6 +5,7 @@
 #include "common/cli.h"
 #include "common/container_input.h"
 #include "common/file_forms.h"
+#include "common/file_names.h"
 #include "common/frame_range.h"
 #include "common/volume_words.h"
 #include "dump/dump.h"
@@ -21,7 +22,8 @@ namespace {
 
 constexpr const char* kFooter =
     "Writes the files that encode read: same names, channels, attributes and bits; EXR where the\n"
-    "container does not say, as recordings and traces do not. --files makes them of another kind,\n"
+    "container does not say, as recordings and traces do not. In names of files %2F stands for a\n"
+    "slash, and other bytes that they cannot have likewise. --files makes them of another kind,\n"
     "with the same texels; DDS files have no attributes, and only DXGI's formats. Files that are\n"
     "there already are kept and end the command unless --overwrite is given; even then a dump is\n"
     "not replaced by a texture that lacks something of what was encoded (--inactive, --lossy) and\n"
@@ -144,6 +146,10 @@ Exit decode(const DecodeOptions& options, const Cli& cli) {
   for (std::size_t i = 0; i < input.textures().size(); ++i) {
     if (!input.is_selected(i)) continue;
     const StoredTexture& texture = input.textures()[i];
+    if (const std::string stem = file_stem(texture); stem != texture.name) {
+      remark(fmt::format("texture {}: its files are named {}, since its name cannot be theirs",
+                         texture.name, stem));
+    }
     if (const std::string loss = texture.loss(); !loss.empty()) remark(loss);
     if (!texture.dropped.empty()) {
       remark(

@@ -3,6 +3,7 @@
 #include "common/cli.h"
 #include "common/container_output.h"
 #include "common/error_flags.h"
+#include "common/file_names.h"
 #include "common/stored_texture.h"
 #include "common/volume_words.h"
 #include "dump/block_place.h"
@@ -219,11 +220,11 @@ ContainerDescription describe(const EncodeOptions& options, const std::vector<La
   ContainerDescription description;
   std::size_t bytes = 0;
   for (const Lane& lane : lanes) {
-    // decode would refuse the name.
-    if (!is_file_name(lane.stored.name)) {
+    // decode would give files of another name.
+    if (file_stem(lane.stored) != lane.files.name) {
       fail(Exit::bad_input,
-           "{}: the name of texture {} is not UTF-8, has control characters or begins with a dot; "
-           "rename its dumps",
+           "{}: the name of texture {} is not UTF-8, has control characters, begins with a dot or "
+           "has a % where decode writes an escape; rename its dumps",
            output, lane.stored.name);
     }
     for (const auto& [name, value] : to_entry(lane.stored).metadata) {

@@ -3,6 +3,7 @@
 #include "common/cli.h"
 #include "common/container_input.h"
 #include "common/error_flags.h"
+#include "common/file_names.h"
 #include "common/volume_words.h"
 #include "difference.h"
 #include "dump/dump.h"
@@ -186,6 +187,13 @@ Exit verify(const VerifyOptions& options, const Cli& cli) {
   std::vector<Sequence> sequences;
   for (const std::string& path : options.files) require_exists(path);
   if (!options.files.empty()) sequences = group_sequences(options.files, true);
+  for (Sequence& sequence : sequences) {
+    const auto named = [&](const StoredTexture& texture) {
+      return file_stem(texture) == sequence.name;
+    };
+    const auto texture = std::ranges::find_if(input.textures(), named);
+    if (texture != input.textures().end()) sequence.name = texture->name;
+  }
   const auto texture_of = [&](const Finding& finding) -> const StoredTexture* {
     for (const StoredTexture& texture : input.textures()) {
       if (texture.name == finding.texture) return &texture;

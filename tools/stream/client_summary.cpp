@@ -1,5 +1,6 @@
 #include "client_summary.h"
 
+#include "dump/data_text.h"
 #include "dump/text.h"
 #include "log.h"
 #include "percentiles.h"
@@ -59,7 +60,7 @@ void summarise(const SimulateResult& r, std::uint32_t clients, bool json) {
                                {"gaps", r.gaps},
                                {"proofs", r.proofs},
                                {"failed_proofs", r.failed_proofs}};
-    tools::print("{}\n", summary.dump());
+    tools::write_json(stdout, summary);
   } else {
     const auto [p50, p95, p99] = percentiles(r.intervals);
     tools::print(
@@ -95,7 +96,7 @@ void summarise(const ViewerResult& r, const Recorded& recorded, bool json) {
                                {"lossy", r.lossy},
                                {"recorded", recorded.files},
                                {"recorded_without_name", recorded.left}};
-    tools::print("{}\n", summary.dump());
+    tools::write_json(stdout, summary);
     return;
   }
   tools::print("{} in {:.1f} s, {:.2f} Mbps, {}", count(r.updates, "update"), r.seconds,

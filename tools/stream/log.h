@@ -38,10 +38,10 @@ void log_line(fmt::format_string<Args...> format, Args&&... args) noexcept {
 /// Clears the status line of a terminal.
 inline void clear_status() noexcept { log_text("\r\033[K"); }
 
-/// Writes the status line of a terminal.
+/// Writes the status line of a terminal, made printable().
 template <typename... Args>
 void show_status(fmt::format_string<Args...> format, Args&&... args) {
-  log_text("\r\033[K" + fmt::format(format, std::forward<Args>(args)...));
+  log_text("\r\033[K" + tools::printable(fmt::format(format, std::forward<Args>(args)...)));
 }
 
 /// Limits the lines that strangers may cause, so that they cannot fill a disk.

@@ -1,8 +1,8 @@
 #include "picture_folder.h"
 
+#include "common/file_names.h"
 #include "dump/sequence.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace gicodec::streaming {
@@ -10,13 +10,9 @@ namespace {
 
 constexpr std::size_t kMaxPart = 100;  ///< bytes; two parts and a number are a file's name
 
-std::string file_name_part(std::string name) {
-  const auto plain = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-';
-  };
-  std::ranges::replace_if(
-      name, [&](char c) { return !plain(c); }, '_');
-  return name.empty() ? "_" : name.substr(0, kMaxPart);
+/// Without dots, which stand between parts, and without what shells and other systems read.
+std::string file_name_part(const std::string& name) {
+  return tools::as_file_name(name, kMaxPart, " !\"#$&'()*+,.:;<=>?@[\\]^`{|}");
 }
 
 }  // namespace

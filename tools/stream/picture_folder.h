@@ -24,8 +24,7 @@ class PictureFolder {
 
   /// FOLDER/frame.NNNN.png
   [[nodiscard]] Place frame(std::uint32_t number);
-  /// FOLDER/VOLUME.TEXTURE.NNNN.png. In the server's names, characters other than letters, digits
-  /// and '-' become '_'; long names are cut.
+  /// FOLDER/VOLUME.TEXTURE.NNNN.png, the server's names by tools::as_file_name().
   [[nodiscard]] Place texture(const std::string& volume, const std::string& texture,
                               std::uint32_t number);
 

@@ -1,13 +1,14 @@
 #include "server_statistics.h"
 
 #include "clock.h"
+#include "dump/data_text.h"
 #include "dump/error.h"
 #include "dump/file.h"
 #include "dump/text.h"
 #include "log.h"
 #include "percentiles.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 #include <unistd.h>
 #include <nlohmann/json.hpp>
 
@@ -24,13 +25,17 @@ constexpr double kInterval = 1;
 constexpr std::size_t kMaxLatencies = 1U << 20, kRecent = 4096;
 using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
-constexpr const char* kLogHead = "update,time,trace_ms,encode_ms,active,connection,packets,bytes";
+/// Columns of the log; those of the streams follow.
+const std::vector<std::string> kLogColumns{"update", "time",       "trace_ms", "encode_ms",
+                                           "active", "connection", "packets",  "bytes"};
 
 bool is_statistics(std::string_view head) {
   return head.starts_with("{\"summary\":{\"time\":") ||
          (head.starts_with("{\"time\":\"") && head.find("\",\"second\":") != head.npos);
 }
-bool is_log(std::string_view head) { return head.starts_with(kLogHead); }
+bool is_log(std::string_view head) {
+  return head.starts_with(fmt::format("{}", fmt::join(kLogColumns, ",")));
+}
 
 File open(const std::string& path, bool (*is_report)(std::string_view)) {
   if (!path.empty()) tools::check_report(path, is_report);
@@ -40,11 +45,6 @@ File open(const std::string& path, bool (*is_report)(std::string_view)) {
   // A killed server leaves complete lines.
   if (file) static_cast<void>(std::setvbuf(file.get(), nullptr, _IOLBF, BUFSIZ));
   return file;
-}
-
-/// Never fails: check_written() finds the file's error flag.
-void put(std::FILE* file, const std::string& text) noexcept {
-  std::fwrite(text.data(), 1, text.size(), file);
 }
 
 bool is_whole(std::FILE* file) {
@@ -92,9 +92,9 @@ ServerStatistics::ServerStatistics(const Output& output, const std::vector<FeedV
     }
   }
   if (!log_) return;
-  std::string head = kLogHead;
-  for (const std::string& stream : streams_) head += "," + stream;
-  put(log_.get(), head + "\n");
+  std::vector<std::string> columns = kLogColumns;
+  columns.insert(columns.end(), streams_.begin(), streams_.end());
+  tools::write_csv(log_.get(), columns);
 }
 
 ServerStatistics::~ServerStatistics() {
@@ -150,12 +150,17 @@ void ServerStatistics::updated(Server& server, const Update& update) {
     }
     bytes_ += bytes;
     if (!log_) continue;
-    std::string line =
-        fmt::format("{},{},{:.3f},{:.3f},{},{},{},{}", update.number, update.time,
-                    std::max(0.0, update.trace_seconds) * 1e3, update.encode_seconds * 1e3,
-                    update.active, connection, packets.size(), bytes);
-    for (const std::uint64_t count : probes) line += fmt::format(",{}", count);
-    put(log_.get(), line + "\n");
+    std::vector<std::string> fields{
+        fmt::format("{}", update.number),
+        fmt::format("{}", update.time),
+        fmt::format("{:.3f}", std::max(0.0, update.trace_seconds) * 1e3),
+        fmt::format("{:.3f}", update.encode_seconds * 1e3),
+        fmt::format("{}", update.active),
+        fmt::format("{}", connection),
+        fmt::format("{}", packets.size()),
+        fmt::format("{}", bytes)};
+    for (const std::uint64_t count : probes) fields.push_back(fmt::format("{}", count));
+    tools::write_csv(log_.get(), fields);
   }
 }
 
@@ -218,10 +223,10 @@ ordered_json ServerStatistics::line(Server& server, double now) {
           {"totals", std::move(totals)}};
 }
 
-void ServerStatistics::write(const std::string& text) {
+void ServerStatistics::write(const ordered_json& json) {
   for (std::FILE* file : {lines_.get(), output_.json ? stdout : nullptr}) {
     if (file == nullptr) continue;
-    tools::write_text(file, text + "\n");
+    tools::write_json(file, json);
     tools::flush_text(file);
   }
 }
@@ -238,7 +243,7 @@ void ServerStatistics::tick(Server& server, double now) {
   if (began_ < 0) began_ = last_ = now;
   if (now - last_ < kInterval) return;
   const ordered_json json = line(server, now);
-  if (wants_lines()) write(json.dump());
+  if (wants_lines()) write(json);
   if (terminal_) status(json);
 }
 
@@ -265,7 +270,7 @@ void ServerStatistics::table(Server& server) const {
 void ServerStatistics::finish(Server& server, double now) {
   if (began_ < 0) began_ = last_ = now;
   for (auto& [id, connection] : connections_) collect(server, id, connection);
-  if (now > last_ && wants_lines()) write(line(server, now).dump());
+  if (now > last_ && wants_lines()) write(line(server, now));
   const double seconds = updating_seconds();
   const ordered_json summary{
       {"time", utc_time()},
@@ -282,7 +287,7 @@ void ServerStatistics::finish(Server& server, double now) {
       {"views_ms", rounded(all_views_.mean_ms())},
       {"encode_ms", rounded(all_encode_.mean_ms())},
       {"memory_bytes", server.memory()}};
-  write(ordered_json{{"summary", summary}}.dump());
+  write({{"summary", summary}});
   if (terminal_) clear_status();
   if (!output_.json && !output_.quiet) table(server);
 }

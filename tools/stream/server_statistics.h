@@ -78,7 +78,7 @@ class ServerStatistics {
   void collect(Server& server, ConnectionId id, Connection& connection);
   nlohmann::ordered_json line(Server& server, double now);
   [[nodiscard]] bool wants_lines() const { return lines_ != nullptr || output_.json; }
-  void write(const std::string& text);
+  void write(const nlohmann::ordered_json& json);
   void status(const nlohmann::ordered_json& line) const;
   [[nodiscard]] double updating_seconds() const;
   void table(Server& server) const;

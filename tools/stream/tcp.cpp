@@ -110,6 +110,20 @@ int accept_tcp(int descriptor, TcpPeer& peer) {
   return accepted;
 }
 
+bool peer_is_here(int descriptor) noexcept {
+  constexpr std::uint32_t kLoopback = 127, kNetworkShift = 24;
+  sockaddr_storage to{};
+  socklen_t size = sizeof to;
+  if (getpeername(descriptor, reinterpret_cast<sockaddr*>(&to), &size) != 0) return false;
+  in_addr v4 = reinterpret_cast<const sockaddr_in&>(to).sin_addr;
+  if (to.ss_family == AF_INET6) {
+    const in6_addr& v6 = reinterpret_cast<const sockaddr_in6&>(to).sin6_addr;
+    if (!IN6_IS_ADDR_V4MAPPED(&v6)) return IN6_IS_ADDR_LOOPBACK(&v6) != 0;
+    std::memcpy(&v4, v6.s6_addr + kMappedBytes, sizeof v4);
+  }
+  return ntohl(v4.s_addr) >> kNetworkShift == kLoopback;
+}
+
 TcpState tcp_state(int descriptor) {
   constexpr unsigned kMicroseconds = 1000;
   tcp_info info{};

@@ -24,6 +24,9 @@ struct TcpPeer {
 /// it closes the connection and throws std::bad_alloc.
 [[nodiscard]] int accept_tcp(int descriptor, TcpPeer& peer);
 
+/// True if the other end of a connection is on this machine.
+[[nodiscard]] bool peer_is_here(int descriptor) noexcept;
+
 /// The system's counters of a connection.
 struct TcpState {
   std::uint64_t read = 0;   ///< bytes read from the socket so far

@@ -1,5 +1,6 @@
 // The connections of a WebLoop: accepting, opening, writing, time-outs, closing.
 #include "clock.h"
+#include "dump/text.h"
 #include "web_loop_state.h"
 
 #include <unistd.h>
@@ -15,6 +16,7 @@ constexpr std::size_t kChunk = 64 << 10;  ///< bytes that leave at once
 /// Seconds that a client has to read the reason and to close. If the server closed with unread
 /// bytes of the client, the reset would overtake the reason.
 constexpr double kReading = 0.4;
+constexpr std::size_t kLocation = 4096;  ///< bytes; libwebsockets takes no longer heads
 
 }  // namespace
 
@@ -100,10 +102,23 @@ void WebLoop::Loop::begin(WebLink* link) {
   // objection() checks names, those of IPv6 too.
   if (link->server.via == Via::web)
     info.ssl_connection = LCCSCF_USE_SSL | LCCSCF_SKIP_SERVER_CERT_HOSTNAME_CHECK;
+  info.ssl_connection |= LCCSCF_HTTP_NO_FOLLOW_REDIRECT;
   lws* const wsi = lws_client_connect_via_info(&info);
   beginning = nullptr;
   if (wsi == nullptr || failed) return gone(link, why);
   link->wsi = wsi;
+}
+
+std::string WebLoop::Loop::redirection(lws* wsi) {
+  const unsigned code = lws_http_client_http_response(wsi);
+  if (code < 300 || code > 399) return "";
+  std::string where(kLocation, '\0');
+  const int size = lws_hdr_copy(wsi, where.data(), kLocation, WSI_TOKEN_HTTP_LOCATION);
+  where.resize(size > 0 ? static_cast<std::size_t>(size) : 0);
+  return fmt::format(
+      "what answers there is no gi-server, but a redirect (HTTP {}) to \"{}\", which is not "
+      "followed; if a server that you trust is there, --connect to that one",
+      code, tools::message(where));
 }
 
 int WebLoop::Loop::opened(WebLink* link, lws* wsi) {
@@ -159,9 +174,8 @@ void WebLoop::Loop::gone(WebLink* link, std::string_view reason) {
   const bool announced = link->open || !link->accepted;
   link->open = false;
   link->wsi = nullptr;
-  // A server with a refused certificate would be refused again.
-  if (!link->why.empty())
-    return state.closed(link, announced, {"the server is not trusted: ", link->why}, true);
+  // Who was refused would be refused again.
+  if (!link->why.empty()) return state.closed(link, announced, {link->why}, true);
   const bool foreign = reason.starts_with("HS:");  // libwebsockets, of answers to the upgrade
   state.closed(link, announced,
                {foreign ? "what answers there is no gi-server; is it the port?" : reason}, foreign);

@@ -35,7 +35,7 @@ struct WebLink {
   bool open = false, broken = false;
   double goodbye_sent = 0;                  ///< when the server's reason left; 0: it has not
   bool trusted = false;                     ///< the server's certificate was verified
-  std::string why;                          ///< reason to refuse the certificate
+  std::string why;                          ///< reason to refuse the server
   Message partial;                          ///< the incomplete message that is arriving
   std::uint64_t payload = 0, messages = 0;  ///< received
   TcpState tcp;

@@ -53,6 +53,7 @@ void WebLoop::Loop::start() {
                  LWS_SERVER_OPTION_EXPLICIT_VHOSTS;
   if (certificate) info.options |= LWS_SERVER_OPTION_CREATE_VHOST_SSL_CTX;
   info.alpn = "http/1.1";
+  info.http_proxy_address = "";  // Not that of the environment, which would see what is in clear.
   info.server_string = "gi-server";
   info.gid = info.uid = -1;  // Keeps those of the process.
   info.retry_and_idle_policy = &patience;
@@ -133,7 +134,8 @@ int WebLoop::Loop::take(lws* wsi, lws_callback_reasons reason, void* user, void*
       auto* const chain = static_cast<x509_store_ctx_st*>(user);
       const std::string refused =
           objection(chain, size != 0, link->server.host, state.options.trust, link->trusted);
-      if (link->why.empty()) link->why = refused;
+      if (link->why.empty() && !refused.empty())
+        link->why = "the server is not trusted: " + refused;
       return refused.empty() ? 0 : 1;
     }
     case LWS_CALLBACK_HTTP:
@@ -143,6 +145,12 @@ int WebLoop::Loop::take(lws* wsi, lws_callback_reasons reason, void* user, void*
                      lws_hdr_total_length(wsi, WSI_TOKEN_PROTOCOL) > 0
                  ? 0
                  : -1;
+    case LWS_CALLBACK_CLIENT_APPEND_HANDSHAKE_HEADER:  // Nothing was sent yet.
+      if (link->server.via != Via::plain_web || peer_is_here(lws_get_socket_fd(wsi))) return 0;
+      link->why = "its name stands for another machine, and ws:// is not encrypted";
+      return -1;
+    case LWS_CALLBACK_CLIENT_HTTP_REDIRECT:
+      return -1;
     case LWS_CALLBACK_CLIENT_FILTER_PRE_ESTABLISH:
       return link->server.via == Via::plain_web || link->trusted ? 0 : -1;
     case LWS_CALLBACK_ESTABLISHED:
@@ -158,6 +166,7 @@ int WebLoop::Loop::take(lws* wsi, lws_callback_reasons reason, void* user, void*
     case LWS_CALLBACK_CLIENT_WRITEABLE:
       return write(link);
     case LWS_CALLBACK_CLIENT_CONNECTION_ERROR:
+      if (link->why.empty()) link->why = redirection(wsi);
       lws_set_opaque_user_data(wsi, nullptr);
       gone(link, in == nullptr ? std::string_view()
                                : std::string_view(static_cast<const char*>(in), size));

@@ -40,6 +40,9 @@ struct WebLoop::Loop {
   void leave(WebLink* link);
   void take_wishes();
   void begin(WebLink* link);
+  /// If a server answers the upgrade with a redirect: what to say of it. Nobody is followed: the
+  /// client has a token, and chose whom it tells it.
+  static std::string redirection(lws* wsi);
   int opened(WebLink* link, lws* wsi);
   int write(WebLink* link);
   void gone(WebLink* link, std::string_view reason);
