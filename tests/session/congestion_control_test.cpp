@@ -1,9 +1,11 @@
-// The limit of blocks in packets for few, as updates take their time.
+// The limit of blocks in packets for few, as updates take their time, and when a client gets its
+// next update.
 #include "session/server/congestion_control.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <optional>
 
 namespace gicodec {
 namespace {
@@ -82,6 +84,21 @@ TEST(BlocksForFew, HaveNoLimitBeforeAnUpdateTakesTooLong) {
   EXPECT_EQ(next_limit_for_few(0, {100, 100, 0}, 0.1, 0.2), 0);
   EXPECT_EQ(next_limit_for_few(0, {0, 0, 0}, 0.1, 0.2), 0);
   EXPECT_LT(next_limit_for_few(0, {1, 1, 0}, 10, 0.2), 1);  // Not one in each update.
+}
+
+/// What docs/guarantees.md says: one and three quarters of an interval, and the path's own time.
+TEST(CongestionControl, MakesNoUpdateWhileAnOlderOneIsLate) {
+  constexpr double kPath = 0.25, kInterval = 0.125, kMade = 8;
+  CongestionControl control(1 << 20);
+  control.answered(kPath, 0);
+  const auto at = [&](double intervals) {
+    return control.budget(kMade + kPath + intervals * kInterval, kMade, 1, kInterval);
+  };
+  EXPECT_EQ(at(0), 1U << 20);
+  EXPECT_EQ(at(1.75), 1U << 20);
+  EXPECT_EQ(at(1.76), std::nullopt);
+  EXPECT_EQ(at(100), std::nullopt);
+  EXPECT_EQ(control.budget(100, std::nullopt, 0, kInterval), 1U << 20);  // All has arrived.
 }
 
 }  // namespace

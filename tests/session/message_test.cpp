@@ -180,14 +180,20 @@ RC_GTEST_PROP(Messages, AnyBytesAreReadOrRefused, (std::uint64_t seed)) {
 }
 
 TEST(Messages, RefusesAnotherVersionAndAnotherProtocol) {
-  Message hello;
-  ASSERT_EQ(write_message(Hello{}, hello), Status::ok);
-  Message other = hello;
-  other[5] = std::byte{kProtocolVersion + 1};
-  EXPECT_EQ(read_message(other).status(), Status::unsupported_version);
-  other = hello;
-  other[1] = std::byte{'x'};
-  EXPECT_EQ(read_message(other).status(), Status::not_gicodec);
+  for (const AnyMessage& said :
+       {AnyMessage(Hello{}), AnyMessage(Welcome{.ticket = {std::byte{1}}})}) {
+    Message good;
+    ASSERT_EQ(write_message(said, good), Status::ok);
+    Message other = good;
+    for (unsigned version = 0; version <= UINT8_MAX; ++version) {
+      if (version == kProtocolVersion) continue;
+      other[5] = static_cast<std::byte>(version);
+      EXPECT_EQ(read_message(other).status(), Status::unsupported_version) << version;
+    }
+    other = good;
+    other[1] = std::byte{'x'};
+    EXPECT_EQ(read_message(other).status(), Status::not_gicodec);
+  }
 }
 
 TEST(Messages, RefusesWhatIsBeyondTheLimits) {

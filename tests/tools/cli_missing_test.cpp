@@ -48,6 +48,15 @@ TEST_F(CliMissing, TexturesAndFrames) {
   program_.succeed({"encode", "--allow-gaps", "-o", "gaps.gic", "in"});
   program_.expect_failure(Exit::bad_input, {"decode", "gaps.gic", "--frames", "2", "-o", "out"},
                           {"has no frame in 2; it holds frames 0-3, 3 of them"});
+  // Between two frames, of which the second would be found: from a file, and from a pipe.
+  fs::remove(program_.path("a.png"));
+  program_.expect_failure(Exit::bad_input, {"preview", "gaps.gic", "--frame", "2", "-o", "a.png"},
+                          {"has no frame 2 of texture color; it holds frames 0-3, 3 of them"});
+  const Outcome gaps =
+      program_.run({"preview", "-", "--frame", "2", "-o", "a.png"}, program_.path("gaps.gic"));
+  EXPECT_EQ(gaps.exit, static_cast<int>(Exit::bad_input));
+  EXPECT_NE(gaps.err.find("it holds frames 0-3, 3 of them"), std::string::npos) << gaps.err;
+  EXPECT_FALSE(fs::exists(program_.path("a.png")));
 }
 
 TEST_F(CliMissing, ContainersThatAreNone) {
