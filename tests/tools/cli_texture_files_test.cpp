@@ -357,7 +357,7 @@ TEST_F(CliTextureFiles, SlicesOfExrFiles) {
   bare.attributes.clear();
   write_dump(program_.path("bare/t.0000.exr"), bare, random_texels(desc, 1));
   program_.expect_failure(Exit::bad_input, {"encode", "-o", "y.gic", "bare"},
-                          {"--grid", "--extent"});
+                          {"--grid for probes", "--block 8x8x1 for another texture"});
   program_.succeed({"encode", "-o", "y.gic", "--extent", "9x6x7", "--block", "t=8x8x2", "bare"});
   expect_part(program_.succeed({"info", "y.gic"}).out, "blocks of 8x6x2");
   program_.succeed({"verify", "y.gic", "bare"});

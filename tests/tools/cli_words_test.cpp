@@ -55,11 +55,16 @@ TEST_F(CliWords, ValuesThatAreNoCodes) {
   write_dump(program_.path("half.exr"), dump.info, dump.texels, Existing::replace);
   program_.expect_failure(Exit::bad_input, {"encode", "-o", "x.gic", "half.exr"},
                           {"is not n/1023", "--vk-format R16G16B16A16_SFLOAT"});
-  program_.expect_failure(Exit::bad_input,
-                          {"encode", "-o", "x.gic", "--vk-format", "B10G11R11_UFLOAT_PACK32",
-                           "--channels", "R=R,G=G,B=B", "half.exr"},
-                          {"-bit code; files of this format hold codes 0 to ",
-                           "; --vk-format R16G16B16A16_SFLOAT keeps such values as they are"});
+  dump.info.channels.alpha = false;
+  for (std::size_t i = 6; i < dump.texels.size(); i += 8) {
+    dump.texels[i] = dump.texels[i + 1] = std::byte{0};
+  }
+  write_dump(program_.path("rgb.exr"), dump.info, dump.texels, Existing::replace);
+  program_.expect_failure(
+      Exit::bad_input,
+      {"encode", "-o", "x.gic", "--vk-format", "B10G11R11_UFLOAT_PACK32", "rgb.exr"},
+      {"-bit code; files of this format hold codes 0 to ",
+       "; --vk-format R16G16B16A16_SFLOAT keeps such values as they are"});
   program_.succeed({"encode", "-o", "x.gic", "--vk-format", "R16G16B16A16_SFLOAT", "half.exr"});
   program_.succeed({"verify", "x.gic", "half.exr"});
 
