@@ -391,5 +391,20 @@ TEST(Session, ReadOfSomeBlocksWritesOnlyThose) {
   EXPECT_TRUE(out.padding_untouched());
 }
 
+/// Whole textures are written by some hundred blocks at a time.
+TEST(Session, ReadOfThousandsOfBlocksWritesAll) {
+  Random random(17);
+  const TextureDesc desc = probe_texture(Format::R16_SFLOAT, {20, 10, 6}, 1, 0, Tiling::atlas_xy_z);
+  Texture texture(desc);
+  texture.fill(Fill::noise, random);
+  auto encoder = *Encoder::create(desc);
+  auto decoder = *Decoder::create(desc);
+  ASSERT_EQ(decoder.decode(*encoder.encode(std::as_const(texture).view())), Status::ok);
+  Texture out(desc, 5);
+  ASSERT_EQ(decoder.read(out.view()), Status::ok);
+  EXPECT_TRUE(out.blocks() == texture.blocks());
+  EXPECT_TRUE(out.padding_untouched());
+}
+
 }  // namespace
 }  // namespace gicodec

@@ -91,6 +91,7 @@ TEST(CongestionControl, MakesNoUpdateWhileAnOlderOneIsLate) {
   constexpr double kPath = 0.25, kInterval = 0.125, kMade = 8;
   CongestionControl control(1 << 20);
   control.answered(kPath, 0);
+  control.answered(2 * kPath, 1);  // The path was not idle.
   const auto at = [&](double intervals) {
     return control.budget(kMade + kPath + intervals * kInterval, kMade, 1, kInterval);
   };
@@ -99,6 +100,49 @@ TEST(CongestionControl, MakesNoUpdateWhileAnOlderOneIsLate) {
   EXPECT_EQ(at(1.76), std::nullopt);
   EXPECT_EQ(at(100), std::nullopt);
   EXPECT_EQ(control.budget(100, std::nullopt, 0, kInterval), 1U << 20);  // All has arrived.
+}
+
+/// A path that is always busy may have become longer: once in ten seconds it is left idle.
+TEST(CongestionControl, LooksAgainAtAPathThatIsAlwaysBusy) {
+  constexpr double kPath = 0.25, kInterval = 0.125;
+  CongestionControl control(1 << 20);
+  control.answered(kPath, 0);
+  control.acknowledged({.made = -kPath, .bytes = 1, .limited = true}, 0, kInterval, 1 << 20);
+  const double whole = control.bytes();
+  const auto at = [&](double now) { return control.budget(now, now, 1, kInterval); };
+  EXPECT_EQ(at(10), whole);
+  EXPECT_EQ(at(10.25), std::nullopt);
+  EXPECT_EQ(at(10.25), std::nullopt);                               // until all has arrived,
+  EXPECT_EQ(control.budget(10.5, std::nullopt, 0, kInterval), 0U);  // then an empty update
+  // The path's own time is now twice what it was.
+  control.acknowledged({.made = 10.5, .alone = true, .empty = true}, 11, kInterval, 1 << 20);
+  EXPECT_EQ(control.budget(20.71, 20, 1, kInterval), whole);
+  EXPECT_EQ(control.budget(20.72, 20, 1, kInterval), std::nullopt);
+}
+
+/// Queues in intervals between updates, and what they do to the budget.
+TEST(CongestionControl, FollowsTheQueue) {
+  constexpr double kPath = 0.25, kInterval = 0.125, kMean = 1 << 20;
+  CongestionControl control(1 << 20);
+  control.answered(kPath, 0);
+  double now = 0;
+  const auto after = [&](double queue) {
+    const CongestionControl::Sent update{
+        .made = now, .bytes = 1 << 20, .delivered = control.delivered(), .limited = true};
+    now += kPath + queue * kInterval;
+    const double before = control.bytes();
+    control.acknowledged(update, now, kInterval, kMean);
+    return control.bytes() - before;
+  };
+  EXPECT_EQ(after(0.5), kMean);  // A new client's doubles while there is none,
+  const double slow = 0.05 * kMean * kPath / kInterval;
+  EXPECT_NEAR(after(0.75), slow, 1);  // then grows by a twentieth of the mean and path,
+  EXPECT_NEAR(after(0.25), slow, 1);
+  EXPECT_NEAR(after(1), slow, 1);
+  EXPECT_EQ(after(1.25), 0);  // then stays,
+  EXPECT_LT(after(2), 0);     // and then becomes what gets through, less three tenths.
+  EXPECT_NEAR(control.bytes(), 0.7 * kMean / 2, 1);
+  EXPECT_NEAR(after(0.5), 0.25 * 0.7 * kMean / 2, 1);  // Small ones grow fast.
 }
 
 }  // namespace

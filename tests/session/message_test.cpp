@@ -214,6 +214,20 @@ Welcome named_welcome() {
   return welcome;
 }
 
+TEST(Messages, TakesTextsAsLongAsTheLimits) {
+  Welcome welcome = named_welcome();
+  welcome.scene.name.assign(kMaxName, 's');
+  welcome.volumes[0].description.assign(kMaxKindDescription, std::byte{7});
+  Message message;
+  ASSERT_EQ(write_message(welcome, message), Status::ok);
+  const auto read = read_message(message);
+  ASSERT_TRUE(read.ok());
+  EXPECT_EQ(std::get<Welcome>(*read).scene.name, welcome.scene.name);
+  EXPECT_EQ(std::get<Welcome>(*read).volumes, welcome.volumes);
+  welcome.volumes[0].description.push_back(std::byte{7});
+  EXPECT_EQ(write_message(welcome, message), Status::invalid_argument);
+}
+
 TEST(Messages, RefusesRegionsBeyondTheirRange) {
   Welcome welcome;
   welcome.ticket[0] = std::byte{1};

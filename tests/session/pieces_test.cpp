@@ -231,6 +231,9 @@ TEST(Priority, WhatTravelsTogetherCountsAsSeveral) {
   choose(chosen, 1);  // One may always go.
   ASSERT_EQ(chosen.size(), 1U);
   EXPECT_EQ(chosen[0].block, 5U);
+  chosen = {{.block = 0, .age = 9, .blocks = 1}, {.block = 1, .age = 5, .blocks = 5}};
+  choose(chosen, 3);  // But not beside another.
+  EXPECT_EQ(blocks_of(chosen), 1U);
 }
 
 TEST(Priority, HigherRanksComeFirstAndNobodyStarves) {

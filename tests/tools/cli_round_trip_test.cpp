@@ -214,8 +214,29 @@ TEST(Cli, CompareCounts) {
   EXPECT_EQ(json["texels"]["different"], 3);
   EXPECT_EQ(json["first"]["x"], 0);
   EXPECT_EQ(json["channels"][2]["max_distance"], 1);
+  EXPECT_GT(json["psnr_db"], 0);
   program.succeed({"compare", dumps[0], dumps[0]});
   program.expect_failure(Exit::bad_input, {"compare", dumps[0], dumps[1]}, {"cannot be compared"});
+}
+
+/// Floats are as far apart as there are others between them; -0 is just before 0.
+TEST(Cli, CompareCountsAcrossZero) {
+  const Program program;
+  const std::string vis = program.make_dumps(1)[1];
+  Dump dump = read_dump(vis);
+  const std::size_t bytes = dump.info.desc.record.bytes;
+  std::fill_n(dump.texels.begin(), bytes, std::byte{0});
+  write_dump(program.path("a.exr"), dump.info, dump.texels, Existing::replace);
+  for (const int beyond : {0, 5}) {
+    dump.texels[0] = static_cast<std::byte>(beyond);
+    dump.texels[bytes / 2 - 1] = std::byte{0x80};
+    write_dump(program.path("b.exr"), dump.info, dump.texels, Existing::replace);
+    const Outcome compared = program.run({"compare", "--format", "json", "a.exr", "b.exr"});
+    const auto channels = nlohmann::json::parse(compared.out)["channels"];
+    EXPECT_EQ(
+        std::max(channels[0]["max_distance"].get<int>(), channels[1]["max_distance"].get<int>()),
+        1 + beyond);
+  }
 }
 
 TEST(Cli, CropKeepsTexels) {

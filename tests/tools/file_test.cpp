@@ -198,9 +198,17 @@ TEST(Text, EscapesWhatATerminalObeys) {
   EXPECT_EQ(printable("\xff\xc3(\xe2\x82"), "\\xff\\xc3(\\xe2\\x82");
   EXPECT_EQ(printable("\xed\xa0\x80\xc0\x80\xf4\x90\x80\x80").find_first_not_of("\\xedafc0849"),
             std::string::npos);
+  EXPECT_EQ(printable("\xf0\x8f\xbf\xbf"), "\\xf0\\x8f\\xbf\\xbf");  // U+FFFF in four bytes
   const std::string safe = "Z\xc3\xbcrich \xe2\x82\xac \xf0\x9f\x98\x80 \\x1b";
   EXPECT_EQ(printable(safe), safe);
   EXPECT_EQ(printable(std::string("a\0b", 3)), "a\\x00b");
+}
+
+TEST(Text, OnlyTheMiddleOfLongMessagesIsCut) {
+  const std::string whole = std::string(1200, 'a') + std::string(600, 'b');
+  EXPECT_EQ(message(whole), whole);
+  EXPECT_EQ(message(std::string(1200, 'a') + "\n" + std::string(600, 'b')),
+            std::string(1200, 'a') + " [...] " + std::string(600, 'b'));
 }
 
 TEST(Text, ErrorsArePrintable) {
