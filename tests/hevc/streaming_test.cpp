@@ -176,17 +176,22 @@ struct Watcher {
   ConnectionId connection = 0;
 };
 
-/// All share one stream of pictures: whoever comes late, or lost an update, begins with a keyframe,
-/// and holds bit by bit what the others hold.
-void share(const HevcBackend& backend, bool lossy) {
+/// A server of one texture that has this backend of its own.
+Server server_of_pictures(const Backend& backend, const TextureDesc& desc) {
   auto server = *Server::create({.backends = {&backend}, .proofs = true});
-  Texture texture(ddgi_irradiance(kGrid));
   StreamedTexture streamed{.texture = "color", .backend = &backend};
   streamed.settings.preset = "ultrafast";
-  ASSERT_TRUE(server
-                  .add_volume("volume", probes_of({{"color", texture.desc()}}), {kGrid},
-                              std::span(&streamed, 1))
-                  .ok());
+  EXPECT_TRUE(
+      server.add_volume("volume", probes_of({{"color", desc}}), {kGrid}, std::span(&streamed, 1))
+          .ok());
+  return server;
+}
+
+/// All share one stream of pictures: a client that comes late, or lost an update, begins with a
+/// keyframe, and holds bit by bit what the others hold.
+void share(const HevcBackend& backend, bool lossy) {
+  Texture texture(ddgi_irradiance(kGrid));
+  auto server = server_of_pictures(backend, texture.desc());
   std::vector<Watcher> watchers;
   for (int i = 0; i < 3; ++i) watchers.emplace_back(backend);
   watchers[0].connect(server, 0);
@@ -240,14 +245,8 @@ TEST(HevcStreaming, ClientsShareALossyStream) {
 /// Keyframes come when a faster client asks; a slow one gets those after its turns.
 TEST(HevcStreaming, SlowClientsGetKeyframes) {
   const HevcBackend backend;
-  auto server = *Server::create({.backends = {&backend}, .proofs = true});
   Texture texture(ddgi_irradiance(kGrid));
-  StreamedTexture streamed{.texture = "color", .backend = &backend};
-  streamed.settings.preset = "ultrafast";
-  ASSERT_TRUE(server
-                  .add_volume("volume", probes_of({{"color", texture.desc()}}), {kGrid},
-                              std::span(&streamed, 1))
-                  .ok());
+  auto server = server_of_pictures(backend, texture.desc());
   Random random(1);
   texture.fill(Fill::small, random);
   std::vector<Watcher> watchers;

@@ -62,25 +62,25 @@ std::string drawing_help() {
   return text;
 }
 
+/// Refuses the flags that are given of `names` and of `flags.own`, for `reason`.
+static void refuse_given(const tools::Command& app, const KindFlags& flags,
+                         std::span<const char* const> names, const std::string& reason) {
+  const auto refuse = [&](const std::string& flag) {
+    if (app.given(flag)) tools::fail(tools::Exit::usage, "{} is for {}", flag, reason);
+  };
+  for (const char* const flag : names) refuse(flag);
+  for (const auto& [name, values] : flags.own) refuse(fmt::format("--{}", name));
+}
+
 void refuse_flags_of_probes(const tools::Command& app, const KindFlags& flags,
                             std::span<const char* const> of_probes) {
   if (traced_kind(flags).flags) return;
-  const auto refuse = [&](const std::string& flag) {
-    if (app.given(flag))
-      tools::fail(tools::Exit::usage, "{} is for probes; {} have --set NAME=VALUE", flag,
-                  flags.kind);
-  };
-  for (const char* const flag : of_probes) refuse(flag);
-  for (const auto& [name, values] : flags.own) refuse(fmt::format("--{}", name));
+  refuse_given(app, flags, of_probes, fmt::format("probes; {} have --set NAME=VALUE", flags.kind));
 }
 
 void refuse_flags_of_tracing(const tools::Command& app, const KindFlags& flags,
                              std::span<const char* const> of_tracing) {
-  const auto refuse = [&](const std::string& flag) {
-    if (app.given(flag)) tools::fail(tools::Exit::usage, "{} is for scenes that are traced", flag);
-  };
-  for (const char* const flag : of_tracing) refuse(flag);
-  for (const auto& [name, values] : flags.own) refuse(fmt::format("--{}", name));
+  refuse_given(app, flags, of_tracing, "scenes that are traced");
 }
 
 void refuse_flags_of_culled(const tools::Command& app, const KindFlags& flags,
