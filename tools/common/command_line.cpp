@@ -235,6 +235,9 @@ std::optional<Exit> Command::parse(int argc, const char* const* argv) {
     const bool incomplete = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr ||
                             dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
     if (incomplete && !unknown.empty()) fail(Exit::usage, "not expected: {}; see --help", unknown);
+    const std::string_view what = error.what();
+    if (const auto twice = what.find(": At Most 1 required"); twice != what.npos)
+      fail(Exit::usage, "{} is given more than once; see --help", what.substr(0, twice));
     if (error.get_exit_code() != 0) fail(Exit::usage, "{}; see --help", error.what());
     app_->exit(error);
     const bool read_enough = !std::cout.flush() && errno == EPIPE;  // "--help | head"

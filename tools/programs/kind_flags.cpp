@@ -86,14 +86,14 @@ void refuse_flags_of_tracing(const tools::Command& app, const KindFlags& flags,
 void refuse_flags_of_culled(const tools::Command& app, const KindFlags& flags,
                             std::span<const char* const> of_culled) {
   if (traced_kind(flags).culled) return;
-  std::string names;
+  std::vector<std::string_view> names;
   for (const TracedKind& other : traced_kinds()) {
-    if (other.culled) names += (names.empty() ? "" : " and ") + std::string(other.name);
+    if (other.culled) names.push_back(other.name);
   }
   for (const char* const flag : of_culled) {
     if (app.given(flag))
-      tools::fail(tools::Exit::usage, "{} is for {}; {} are always sent whole", flag, names,
-                  flags.kind);
+      tools::fail(tools::Exit::usage, "{} is for {}; {} are always sent whole", flag,
+                  fmt::join(names, " and "), flags.kind);
   }
 }
 

@@ -187,6 +187,12 @@ constexpr const char* kExitCodes =
     "     cannot be listened to or reached\n"
     "  5  an internal error, or memory ran out";
 
+/// Throws where the server could not listen, before it loads or traces anything.
+void check_listening(const ServiceOptions& o) {
+  const Net net(o.listen, o.web, o.net);
+  if (!o.control.empty()) const Control control(o.control);
+}
+
 /// Prints the summary of a server that was interrupted before its first update.
 void summarise_nothing(const ServerFlags& o) {
   auto server = tools::take(Server::create(), "server");
@@ -285,6 +291,7 @@ Exit run(ServerFlags& o) {
   o.server.limits.max_total_bytes_per_second =
       static_cast<std::uint64_t>(o.bandwidth_mbps * 125000);
 
+  check_listening(o.service);
   auto loaded = unless_interrupted([&o] { return load(o); });
   if (!loaded) {
     summarise_nothing(o);

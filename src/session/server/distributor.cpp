@@ -43,10 +43,10 @@ bool Bundle::outdated(std::span<const UpdateStream> streams, std::uint32_t block
   return false;
 }
 
-Result<BackendEncoder*> Distributor::State::encoder(
-    unsigned thread, const ServedTexture& texture, const UpdateStream& stream,
-    const std::vector<std::unique_ptr<BackendEncoder>>& own, std::size_t place) {
-  if (!own.empty() && own[place] != nullptr) return own[place].get();
+Result<BackendEncoder*> Distributor::State::encoder(unsigned thread, const ServedTexture& texture,
+                                                    const UpdateStream& stream,
+                                                    BackendEncoder* own) {
+  if (own != nullptr) return own;
   const ServedTexture* const of = texture.options.own_backend ? &texture : nullptr;
   auto& encoders = workers[thread].encoders;
   for (const auto& one : encoders) {
@@ -58,11 +58,10 @@ Result<BackendEncoder*> Distributor::State::encoder(
   return encoders.back().encoder.get();
 }
 
-/// Makes an encoder for each stream of a stateful texture.
+/// Makes an encoder for each stream of a stateful texture; null for others.
 Status Distributor::State::make_encoders(const Bundle& bundle,
                                          std::span<const UpdateStream> streams,
                                          std::vector<std::unique_ptr<BackendEncoder>>& out) const {
-  if (!bundle.is_stateful) return Status::ok;
   std::vector<std::unique_ptr<BackendEncoder>> encoders(streams.size());
   for (std::size_t i = 0; i < streams.size(); ++i) {
     const ServedTexture& texture = *bundle.textures[i];

@@ -104,7 +104,7 @@ Status Distributor::State::write(const Bundle& bundle, SharedRegion& shared, con
   for (std::size_t i = 0; i < shared.streams.size(); ++i) {
     const UpdateStream& stream = shared.streams[i];
     const StreamState* const held = from == nullptr ? nullptr : &from->states[i];
-    const auto found = encoder(thread, *bundle.textures[i], stream, shared.encoders, i);
+    const auto found = encoder(thread, *bundle.textures[i], stream, shared.encoders[i].get());
     if (!found) return found.status();
     PacketWriter& writer = workers[thread].writer;
     const Status status =

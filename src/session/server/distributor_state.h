@@ -42,7 +42,7 @@ struct UnicastBundle {
   Bundle* bundle;
   std::vector<UpdateStream> streams;         ///< by texture
   std::vector<std::uint32_t> pending_since;  ///< update since which a block is pending; 0 if not
-  /// By texture, null where the backend is not stateful; empty where none is.
+  /// By texture, null where the backend is not stateful.
   std::vector<std::unique_ptr<BackendEncoder>> encoders = {};
 
   /// The last update with the contents that the client holds of a block; 0: it holds none.
@@ -150,11 +150,9 @@ struct Reading {
 };
 
 struct Distributor::State {
-  /// The encoder of a stream: its own of `own`, or the thread's.
+  /// The encoder of a stream: its own, or the thread's if that is null.
   Result<BackendEncoder*> encoder(unsigned thread, const ServedTexture& texture,
-                                  const UpdateStream& stream,
-                                  const std::vector<std::unique_ptr<BackendEncoder>>& own,
-                                  std::size_t place);
+                                  const UpdateStream& stream, BackendEncoder* own);
   Status make_encoders(const Bundle& bundle, std::span<const UpdateStream> streams,
                        std::vector<std::unique_ptr<BackendEncoder>>& out) const;
   /// The options of each texture, by texture id.

@@ -79,7 +79,8 @@ Status Distributor::State::write_unicast(ServedClient& client, unsigned thread,
     const auto from = anew ? UpdateStream::From::keyframe : UpdateStream::From::sent;
     for (std::size_t i = 0; i < unicast.streams.size(); ++i) {
       UpdateStream& stream = unicast.streams[i];
-      const auto found = encoder(thread, *unicast.bundle->textures[i], stream, unicast.encoders, i);
+      const auto found =
+          encoder(thread, *unicast.bundle->textures[i], stream, unicast.encoders[i].get());
       if (!found) return found.status();
       const Status status =
           stream.write(from, p.blocks, **found, workers[thread].writer, p.written[i]);
@@ -149,7 +150,7 @@ Status Distributor::State::update_unicast(ServedClient& client, unsigned thread)
   if (status != Status::ok) {
     // Stateful encoders have seen blocks that will not be sent.
     for (UnicastBundle& unicast : client.unicast) {
-      if (unicast.encoders.empty()) continue;
+      if (!unicast.bundle->is_stateful) continue;
       for (UpdateStream& stream : unicast.streams) stream.request_keyframe();
     }
     return status;
