@@ -9,7 +9,7 @@
 int main() {
   using namespace gicodec;
   // 8 batches of up to 64 photons: how many there are of each, where they lie, and the photons.
-  constexpr std::size_t kCounts = 0, kBatches = 1, kPhotons = 2, kCapacity = 64;
+  constexpr std::size_t kCounts = 0, kBatches = 1, kLight = 2, kCapacity = 64;
   const auto volume = photon_volume(8, kCapacity);
   if (!volume) return 1;
   auto encoder = VolumeEncoder::create(*volume);
@@ -31,7 +31,7 @@ int main() {
   for (unsigned update = 0; update < 3; ++update) {
     // A batch is traced anew. The counts say which of its photons exist.
     const std::size_t count = 20 + update;
-    const auto out = std::span(server[kPhotons]).subspan(update * kCapacity * kPhotonBytes);
+    const auto out = std::span(server[kLight]).subspan(update * kCapacity * kPhotonBytes);
     server[kCounts][2 * update] = std::byte(count);
     pack_photon_batch(
         {},
@@ -53,10 +53,10 @@ int main() {
       return 1;
     }
     std::printf("update %u: %zu batches, %zu bytes of photons, %s\n", update,
-                decoder->changed(kPhotons).size(), (*packets)[kPhotons].size(),
-                client[kPhotons] == server[kPhotons] ? "equal" : "DIFFERENT");
+                decoder->changed(kLight).size(), (*packets)[kLight].size(),
+                client[kLight] == server[kLight] ? "equal" : "DIFFERENT");
   }
   if (container->finish() != Status::ok) return 1;
   std::fclose(file);
-  return client[kCounts] == server[kCounts] && client[kPhotons] == server[kPhotons] ? 0 : 1;
+  return client[kCounts] == server[kCounts] && client[kLight] == server[kLight] ? 0 : 1;
 }
