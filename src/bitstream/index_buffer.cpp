@@ -257,7 +257,9 @@ IndexMode encode_index_buffer(std::span<const std::uint32_t> blocks, std::uint32
   const std::uint64_t gap_bytes = (kParameterBits + gaps.bits(k) + 7) / 8;
 
   const std::size_t start = out.size();
-  const auto least = std::min<std::uint64_t>(gap_bytes, index_buffer_bound(block_count));
+  // Fits a size_t, since the bound does.
+  const auto least =
+      static_cast<std::size_t>(std::min<std::uint64_t>(gap_bytes, index_buffer_bound(block_count)));
   if (write_runs(blocks, block_count, least, out)) return IndexMode::runs;
   out.resize(start);
   if (index_buffer_bound(block_count) <= gap_bytes) {
