@@ -193,8 +193,10 @@ std::string check_volume(const VolumeDesc& volume, const Backend& backend, Gener
         return "other contents of " + textures[t]->name;
       }
       const auto [group, first] = group_of(volume, t);
-      const auto& first_changed = decoder->changed(first);
-      if (group->bundled && !std::ranges::equal(decoder->changed(t), first_changed)) {
+      const auto changed = decoder->changed(t), first_changed = decoder->changed(first);
+      const bool alike =
+          std::equal(changed.begin(), changed.end(), first_changed.begin(), first_changed.end());
+      if (group->bundled && !alike) {
         return "blocks of " + textures[t]->name + " travel alone";
       }
     }

@@ -146,7 +146,6 @@ std::uint32_t to_place(double place) noexcept {
 
 }  // namespace
 
-extern const Kind kAoPoints;
 constinit const Kind kAoPoints{kKindAoPoints, "ao_points", write, read, nullptr};
 
 Result<VolumeDesc> ao_point_volume(std::uint32_t cells, std::uint32_t buckets,

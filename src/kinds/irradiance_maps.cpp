@@ -177,7 +177,6 @@ Result<VolumeDesc> read(std::span<const std::byte> description) {
 
 }  // namespace
 
-extern const Kind kIrradianceMaps;
 constinit const Kind kIrradianceMaps{kKindIrradianceMaps, "irradiance_maps", write, read, nullptr};
 
 Result<VolumeDesc> irradiance_map_volume(const IrradianceMapDesc& desc) {

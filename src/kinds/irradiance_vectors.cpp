@@ -32,7 +32,6 @@ Result<VolumeDesc> read(std::span<const std::byte> description) {
 
 }  // namespace
 
-extern const Kind kIrradianceVectors;
 constinit const Kind kIrradianceVectors{kKindIrradianceVectors, "irradiance_vectors", write, read,
                                         nullptr};
 

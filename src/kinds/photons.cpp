@@ -97,7 +97,6 @@ void sort(const TextureDesc& desc, std::span<std::byte> block) {
 
 }  // namespace
 
-extern const Kind kPhotons;
 constinit const Kind kPhotons{kKindPhotons, "photons", write, read, sort};
 
 Result<PhotonForm> photon_form(const Record& record) noexcept {

@@ -67,7 +67,6 @@ Result<VolumeDesc> read(std::span<const std::byte> description) {
 
 }  // namespace
 
-extern const Kind kProbes;
 constinit const Kind kProbes{kKindProbes, "probes", write, read, nullptr};
 
 Result<VolumeDesc> probe_volume(std::span<const NamedTexture> textures) {

@@ -84,7 +84,6 @@ std::uint32_t blocks_along(std::uint32_t records, std::uint8_t side) {
 
 }  // namespace
 
-extern const Kind kTextures;
 constinit const Kind kTextures{kKindTextures, "textures", write, read, nullptr};
 
 TextureDesc map_texture(const Record& record, Grid records, BlockShape block) noexcept {

@@ -71,7 +71,6 @@ std::uint32_t gather_bits(std::uint64_t x) {
 
 }  // namespace
 
-extern const Kind kVoxels;
 constinit const Kind kVoxels{kKindVoxels, "voxels", write, read, nullptr};
 
 Result<VolumeDesc> voxel_volume(std::uint32_t bricks, std::uint8_t side, VoxelForm form) {

@@ -24,7 +24,8 @@ void CodingCost::Counts::add(std::int64_t number) noexcept {
   }
   const auto length =
       static_cast<int>(std::bit_width(static_cast<std::uint64_t>(std::abs(number))));
-  ++of[static_cast<std::size_t>(2 * kNear + std::min(length, kLengths))];
+  const auto far = static_cast<std::size_t>(std::min(length, kLengths));
+  ++of[std::size_t{2} * kNear + far];
   rest += static_cast<std::uint64_t>(length);  // One less, and the sign.
 }
 

@@ -38,10 +38,12 @@ std::uint32_t error_units(const Component& component, float max_error) noexcept 
     return 0;
   double units = std::floor(max_error);
   if (max_error < 1) {
-    units = is_float(component) ? std::floor(std::ldexp(max_error, mantissa_bits(component))) : 0;
+    units = is_float(component)
+                ? std::floor(std::ldexp(max_error, static_cast<int>(mantissa_bits(component))))
+                : 0;
   }
-  return static_cast<std::uint32_t>(
-      std::min(units, static_cast<double>(largest_code(component) / 4)));
+  const std::uint32_t most = largest_code(component) / 4;
+  return static_cast<std::uint32_t>(std::min(units, static_cast<double>(most)));
 }
 
 bool allows_error(const Record& record, float max_error) noexcept {

@@ -14,7 +14,7 @@ namespace gicodec {
 inline void copy_block(const TextureDesc& from_desc, const CheckedView<const std::byte>& from,
                        std::uint32_t from_block, const TextureDesc& to_desc,
                        const CheckedView<std::byte>& to, std::uint32_t to_block) noexcept {
-  const std::size_t record = to_desc.record.bytes, band = 2U * to_desc.guard_band;
+  const std::size_t record = to_desc.record.bytes, band = std::size_t{2} * to_desc.guard_band;
   const BlockShape inside = block_inside(to_desc, to_block);
   const std::byte* const first = from.at(block_origin(from_desc, from_block), record);
   std::byte* const place = to.at(block_origin(to_desc, to_block), record);
@@ -28,7 +28,7 @@ inline void copy_block(const TextureDesc& from_desc, const CheckedView<const std
 
 inline void clear_block(const TextureDesc& desc, const CheckedView<std::byte>& to,
                         std::uint32_t block) noexcept {
-  const std::size_t record = desc.record.bytes, band = 2U * desc.guard_band;
+  const std::size_t record = desc.record.bytes, band = std::size_t{2} * desc.guard_band;
   const BlockShape inside = block_inside(desc, block);
   std::byte* const place = to.at(block_origin(desc, block), record);
   for (std::size_t z = 0; z < inside.z; ++z) {

@@ -49,7 +49,7 @@ constexpr std::uint64_t before(const TextureDesc& desc, std::uint8_t side) {
   return side > 1 ? desc.layout.pad_before : 0;
 }
 constexpr std::uint64_t guarded_side(const TextureDesc& desc, std::uint8_t side) {
-  return tile(desc, side) + 2U * desc.guard_band;
+  return tile(desc, side) + std::uint64_t{2} * desc.guard_band;
 }
 
 /// True where memory ends with the last record rather than with the last block.

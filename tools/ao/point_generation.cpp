@@ -143,6 +143,7 @@ AoGrid grid_of(const PointInstance& instance, float distance, double area, float
 void fill(PointInstance& instance, const SampledMesh& sampled, const GenerationOptions& options,
           double points, ddgi::ThreadPool& pool) {
   const double area = sampled.areas.back(), density = points * sampled.scale * sampled.scale;
+  // NOLINTNEXTLINE(bugprone-incorrect-roundings): not negative
   const auto kept = std::max(std::size_t{1}, static_cast<std::size_t>(area * density / 2 + 0.5));
   const std::size_t sides = sampled.two_sided ? 2 : 1;
   std::vector<SurfacePoint> samples(2 * kept * sides);

@@ -224,6 +224,7 @@ void PointServer::update(const ddgi::RayScene& scene, std::span<const ExtendedVi
         ddgi::hash(ddgi::hash(options_.generation.seed, round), static_cast<std::uint32_t>(i));
     const float open =
         hemisphere_.visible(scene, place, normalize(m.normal(surface.geometric)), frame, seed);
+    // NOLINTNEXTLINE(bugprone-incorrect-roundings): not negative
     traced[i] = static_cast<std::uint16_t>(open * 255 + 0.5F);
   });
   statistics_ = {};

@@ -20,7 +20,7 @@ void make_utf8(nlohmann::ordered_json& json) {
 }  // namespace
 
 std::string csv_field(std::string_view text) {
-  const std::string shown = printable(text);
+  std::string shown = printable(text);
   if (shown.find_first_of(",\"") == std::string::npos) return shown;
   std::string field = "\"";
   for (const char c : shown) field.append(c == '"' ? 2 : 1, c);

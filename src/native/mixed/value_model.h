@@ -22,14 +22,15 @@ struct FlagContext {
 class ValueModel {
  public:
   static constexpr unsigned kFlags = 256, kChannels = 2 * static_cast<unsigned>(kMaxComponents);
+  static constexpr std::size_t kOfAll = kChannels;
 
   void reset() {
     counters_.reset();
     flags_.assign(kFlags, {});
-    values_.assign(kChannels * kMaxBits, {});
-    widths_.assign(kChannels * kMaxBits, {});
-    digits_.assign(kChannels * kMaxDigits, {});
-    noise_.assign(kChannels * kNibbles, {});
+    values_.assign(kOfAll * kMaxBits, {});
+    widths_.assign(kOfAll * kMaxBits, {});
+    digits_.assign(kOfAll * kMaxDigits, {});
+    noise_.assign(kOfAll * kNibbles, {});
   }
 
   template <typename Coder>

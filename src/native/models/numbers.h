@@ -51,6 +51,7 @@ inline std::uint64_t in_proportion(std::uint64_t value, std::uint64_t to, std::u
   constexpr int kDigits = 16;
   constexpr std::uint64_t kMaxTo = (1U << 20) - 1;
   const int shift = std::max(0, static_cast<int>(std::bit_width(from)) - kDigits);
+  // NOLINTNEXTLINE(clang-analyzer-core.DivideZero): the shift leaves kDigits of its digits.
   return std::min(value * std::min(to >> shift, kMaxTo) / (from >> shift), kMaxPrediction);
 }
 

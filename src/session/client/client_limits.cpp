@@ -34,7 +34,7 @@ void add(Memory& memory, const TextureDesc& desc, const Grid& region, Delivery d
   if (delivery == Delivery::shared) {
     streams = regions_of(desc, region).regions();
     of_stream = region_texture(desc, region, 0);  // The first region is the largest.
-    held += (blocks + 3 * block_count(of_stream)) * sizeof(std::uint32_t);
+    held += (blocks + std::uint64_t{3} * block_count(of_stream)) * sizeof(std::uint32_t);
   }
   // The sum of all textures may overflow, that of one cannot.
   memory.held = saturated(memory.held, held + held_memory(desc) + streams * kTexture);

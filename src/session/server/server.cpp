@@ -257,7 +257,8 @@ std::size_t Server::memory() const noexcept {
     for (const OutgoingMessage& message : connection->messages) {
       bytes += message.head.capacity();
       if (message.rest == nullptr) continue;
-      bytes += message.rest->capacity() / static_cast<std::size_t>(message.rest.use_count());
+      const auto holders = static_cast<std::size_t>(std::max(1L, message.rest.use_count()));
+      bytes += message.rest->capacity() / holders;
     }
   }
   return bytes;

@@ -22,14 +22,14 @@ class SharedUpdates {
     std::span<const OutgoingPacket> packets;
     std::shared_ptr<const Message> rest;
   };
-  std::unordered_map<std::size_t, Shared> by_packets_;  ///< by a hash of them
+  std::unordered_map<std::uint64_t, Shared> by_packets_;  ///< by a hash of them
 };
 
 Status SharedUpdates::write_rest(const UpdateMessage& message,
                                  std::span<const OutgoingPacket> packets,
                                  std::shared_ptr<const Message>& out) {
-  constexpr std::size_t kPrime = 0x100000001B3;
-  std::size_t hash = packets.size();
+  constexpr std::uint64_t kPrime = 0x100000001B3;
+  std::uint64_t hash = packets.size();
   for (const OutgoingPacket& packet : packets) {
     hash = (hash ^ std::hash<const Packet*>()(packet.packet.get()) ^ packet.tier) * kPrime;
   }

@@ -37,7 +37,8 @@ KnownLights known_around(const Update& u, std::span<const std::uint32_t> positio
   const Range xs(x, u.box.x, grid.x), ys(y, u.box.y, grid.y), zs(z, u.box.z, grid.z);
   std::array<Row, kSide * kSide> rows;
   const auto listed = [&](const NearbyOffset& o, std::int64_t index) {
-    Row& row = rows[static_cast<std::size_t>((o.z + kReach) * kSide + o.y + kReach)];
+    const int at = (o.z + kReach) * kSide + o.y + kReach, column = o.x + kReach;
+    Row& row = rows[static_cast<std::size_t>(at)];
     if (!row.searched) {
       row.searched = true;
       row.at.fill(-1);
@@ -51,7 +52,7 @@ KnownLights known_around(const Update& u, std::span<const std::uint32_t> positio
             static_cast<std::int32_t>(next - positions.begin());
       }
     }
-    return row.at[static_cast<std::size_t>(o.x + kReach)];
+    return row.at[static_cast<std::size_t>(column)];
   };
   KnownLights known;
   for (const NearbyOffset& o : kAround) {

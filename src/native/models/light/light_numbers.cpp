@@ -98,6 +98,7 @@ LightCodes LightEncoding::read(const std::byte* record) const {
   for (unsigned i = 0; i < 3; ++i) {
     if (shared_) {
       codes.color[i] = static_cast<std::int32_t>(first >> (9 * i) & kMaxMantissa);
+      // NOLINTNEXTLINE(bugprone-signed-char-misuse): its sign is wanted.
       if (directed_) codes.direction[i] = static_cast<std::int8_t>(record[4 + i]);
     } else {
       codes.color[i] = ordered(word_at(record + std::size_t{4} * i), 32);

@@ -109,7 +109,9 @@ std::uint32_t RecordModel::code_difference(Coder& coder, unsigned c, const Seen&
                       hashed(kHighPrevious + c, previous >> 2, sign),
                       hashed(kHighLast + c, similar_size >> 1, size(last_by, 8) >> 1, sign),
                       hashed(kHighBoth + c, previous >> 5, similar_size >> 1, sign)},
-                     high_bits, actual >> 1 >> low_bits);
+                     high_bits,
+                     // NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult)
+                     actual >> 1 >> low_bits);  // Components have a bit or more.
 
   // By the value that results, since often few values occur there.
   const std::uint32_t by = high << low_bits;
