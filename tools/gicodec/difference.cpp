@@ -58,7 +58,8 @@ class Comparison {
         const std::size_t row = place.row(y, slice);
         if (std::memcmp(&left_[row], &right_[row], place.row_bytes) == 0) continue;
         for (std::uint32_t x = 0; x < place.width; ++x) {
-          compare_texel(row + x * record_.bytes, static_cast<std::uint32_t>(place.x + x),
+          compare_texel(row + std::size_t{x} * record_.bytes,
+                        static_cast<std::uint32_t>(place.x + x),
                         static_cast<std::uint32_t>(place.y + slice * size_.height + y));
         }
       }

@@ -131,7 +131,7 @@ void gather(const Parameterisation& map, const RayScene& scene, std::span<const 
       met = options.rays -
             ddgi::gather(scene, origin, directions, 2 * kPi, mine, light,
                          [&](std::size_t, Vec3 radiance, const Surface*) { sum += radiance; });
-      if (kProbes * met > (kProbes - kBuried) * options.rays) break;
+      if (std::uint64_t{kProbes} * met > std::uint64_t{kProbes - kBuried} * options.rays) break;
     }
     rays += mine;
     out[i] = met > 0 ? sum / static_cast<float>(met) : Vec3{};

@@ -15,7 +15,7 @@ constexpr std::uint32_t kTileBits = kMapTile * kMapTile;
 std::size_t bit_of(std::uint32_t width, std::uint32_t place) {
   const std::uint32_t x = place % width, y = place / width;
   const std::size_t tile = x / kMapTile + std::size_t{(width - 1) / kMapTile + 1} * (y / kMapTile);
-  return kTileBits * tile + x % kMapTile + kMapTile * (y % kMapTile);
+  return kTileBits * tile + x % kMapTile + std::size_t{kMapTile} * (y % kMapTile);
 }
 
 float sane(float v) { return v > 0 ? std::min(v, kMax) : 0; }  // no NaN either

@@ -82,7 +82,8 @@ Emission Emitter::emit(const std::array<float, 4>& n) const {
       const std::uint32_t cell = cells_[static_cast<std::size_t>(at)];
       const float size = 2 * reach_.radius / static_cast<float>(kSide);
       const float x = (static_cast<float>(cell % kSide) + n[1]) * size - reach_.radius;
-      const float y = (static_cast<float>(cell / kSide) + n[2]) * size - reach_.radius;
+      const std::uint32_t row = cell / kSide;
+      const float y = (static_cast<float>(row) + n[2]) * size - reach_.radius;
       return {reach_.center - d * reach_.radius + u * x + v * y, d};
     }
     case LightType::point:

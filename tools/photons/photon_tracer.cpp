@@ -129,14 +129,16 @@ Projection project(const ddgi::RayScene& scene, const Sphere& reach, std::uint32
   const auto runs =
       trace(scene, whole, ddgi::hash(seed, ~light), Emitter::kCells * kPaths, kPaths, pool,
             [](std::uint32_t i) {
-              const float cell = (static_cast<float>(i / kPaths) + 0.5F) / Emitter::kCells;
+              const std::uint32_t number = i / kPaths;
+              const float cell = (static_cast<float>(number) + 0.5F) / Emitter::kCells;
               const float x = static_cast<float>(i % 2), y = static_cast<float>(i / 2 % 2);
               return std::array<float, 4>{cell, 0.25F + 0.5F * x, 0.25F + 0.5F * y, 0};
             });
   const auto lit = [&](std::int32_t x, std::int32_t y) {
     constexpr std::int32_t kEnd = kSide;
     return x >= 0 && y >= 0 && x < kEnd && y < kEnd &&
-           !runs[static_cast<std::size_t>(x + kEnd * y)].stored.empty();
+           !runs[static_cast<std::size_t>(x) + std::size_t{kSide} * static_cast<std::size_t>(y)]
+                .stored.empty();
   };
   std::vector<std::uint32_t> cells;
   for (std::uint32_t cell = 0; cell < Emitter::kCells; ++cell) {

@@ -21,7 +21,7 @@ using tools::fail;
 
 /// The reason why a volume cannot be drawn.
 std::string why_not(const ContainerDescription& description, std::size_t volume) {
-  const std::string unknown = tools::unknown_kind(description, volume);
+  std::string unknown = tools::unknown_kind(description, volume);
   if (!unknown.empty()) return unknown;
   return fmt::format(
       "volume {} is of kind {}, which is not drawn; \"gicodec preview\" shows it, \"gicodec "

@@ -53,14 +53,15 @@ void fit_distribution(const Weights& weights, RepeatEnds& out) {
 Bits bits_of(const native::Distribution& distribution) {
   Bits bits{};
   for (unsigned b = 0; b <= native::bin_of(0xFFFF); ++b) {
-    bits[b] = native::price_of(distribution, b) / 256.0F;
+    bits[b] = static_cast<float>(native::price_of(distribution, b)) / 256.0F;
   }
   return bits;
 }
 Bits bits_of(const RepeatEnds& m) {
   Bits bits{};
   const unsigned slots[] = {m.end0, unsigned{m.end1} - m.end0, native::kProbabilityScale - m.end1};
-  for (unsigned s = 0; s < 3; ++s) bits[s] = native::frequency_cost(slots[s]) / 256.0F;
+  for (unsigned s = 0; s < 3; ++s)
+    bits[s] = static_cast<float>(native::frequency_cost(slots[s])) / 256.0F;
   return bits;
 }
 /// Of an ideal code.

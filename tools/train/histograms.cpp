@@ -14,7 +14,7 @@ Subject subject_of(bool pairs, bool update, unsigned place) {
 void Counter::add(const native::Step* begin, const native::Step* end) {
   for (const auto* s = begin; s != end; ++s) {
     const bool repeats = pairs_ && s->place == native::kRepeatPlace;
-    Counts* const counts = counts_.data() + s->place * native::kContexts;
+    Counts* const counts = counts_.data() + std::size_t{s->place} * native::kContexts;
     for (std::uint32_t rest = s->active; rest != 0; rest &= rest - 1) {
       const auto l = static_cast<unsigned>(std::countr_zero(rest));
       ++counts[s->context[l]][repeats ? s->value[l] : native::bin_of(s->value[l])];

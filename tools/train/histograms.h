@@ -41,7 +41,8 @@ class Counter {
 
  private:
   bool pairs_, update_;
-  std::vector<Counts> counts_ = std::vector<Counts>(native::kPlaces * native::kContexts);
+  std::vector<Counts> counts_ =
+      std::vector<Counts>(std::size_t{native::kPlaces} * native::kContexts);
 };
 
 }  // namespace gicodec::train

@@ -24,7 +24,8 @@ Weights geometric(const native::Thresholds& thresholds, unsigned magnitude) {
 Weights prior(Subject subject, bool wide, unsigned context) {
   Weights w{};
   if (subject >= kRepeatTables) {
-    w[0] = 1 + context / 5;  // the score
+    const unsigned score = context / 5;
+    w[0] = static_cast<float>(1 + score);
     w[1] = w[2] = 1;
   } else if (subject >= kModes) {
     std::fill_n(w.begin(), native::kModes, 1.0);

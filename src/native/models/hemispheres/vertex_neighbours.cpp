@@ -37,8 +37,8 @@ KnownLights known_around(const Update& u, std::span<const std::uint32_t> positio
   const Range xs(x, u.box.x, grid.x), ys(y, u.box.y, grid.y), zs(z, u.box.z, grid.z);
   std::array<Row, kSide * kSide> rows;
   const auto listed = [&](const NearbyOffset& o, std::int64_t index) {
-    const int at = (o.z + kReach) * kSide + o.y + kReach, column = o.x + kReach;
-    Row& row = rows[static_cast<std::size_t>(at)];
+    const int number = (o.z + kReach) * kSide + o.y + kReach, column = o.x + kReach;
+    Row& row = rows[static_cast<std::size_t>(number)];
     if (!row.searched) {
       row.searched = true;
       row.at.fill(-1);
