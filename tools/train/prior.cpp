@@ -25,7 +25,7 @@ Weights prior(Subject subject, bool wide, unsigned context) {
   Weights w{};
   if (subject >= kRepeatTables) {
     const unsigned score = context / 5;
-    w[0] = static_cast<float>(1 + score);
+    w[0] = static_cast<double>(1 + score);
     w[1] = w[2] = 1;
   } else if (subject >= kModes) {
     std::fill_n(w.begin(), native::kModes, 1.0);
