@@ -1,6 +1,7 @@
 // Instruction sets through the public API: each gives the same bytes and texels with every backend
 // and format, and a session runs no kernel of another set than the one that it was given.
 #include "base/checksum.h"
+#include "distinct_formats.h"
 #include "support.h"
 #include "trap_kernels.h"
 
@@ -59,7 +60,7 @@ struct Case {
 /// Every format and backend, each kind of kernel at least once.
 std::vector<Case> cases() {
   std::vector<Case> all;
-  for (const auto& info : formats()) {
+  for (const auto& info : test::distinct_formats()) {
     const TextureDesc desc = probe_texture(info.record, {3, 2, 2}, 5, 1, Tiling::slices_xz_y);
     for (const auto& coding : kCodings) {
       all.push_back({desc, coding});
@@ -116,8 +117,11 @@ TEST(Isa, MachinesDoNotChangeBytes) {
       {kStrong, 2729647194}};
   for (const auto& [coding, expected] : kExpected) {
     Bytes all;
-    for (const auto& info : formats()) {
-      const TextureDesc desc = probe_texture(info.record, {3, 4, 3}, 4, 1, Tiling::atlas_xy_z);
+    for (const std::uint32_t number :
+         {9,  13, 16, 24,  37,  38,  41,  44,  58,  64,  70,  74,  76, 83,
+          91, 97, 98, 100, 103, 106, 109, 122, 123, 143, 144, 145, 146}) {
+      const Record record(static_cast<Format>(number));
+      const TextureDesc desc = probe_texture(record, {3, 4, 3}, 4, 1, Tiling::atlas_xy_z);
       auto encoder = *Encoder::create(desc, options_of(coding));
       Random random(64);
       Texture texture(desc);

@@ -1,4 +1,5 @@
 // Packets as bytes: layout, and what a decoder makes of cut, damaged and forged ones.
+#include "distinct_formats.h"
 #include "support.h"
 
 #include "bitstream/description.h"
@@ -78,7 +79,7 @@ class PacketBytes : public testing::TestWithParam<Coding> {};
 
 TEST_P(PacketBytes, EveryPrefixIsRefused) {
   Random random(31);
-  for (const auto& info : formats()) {
+  for (const auto& info : test::distinct_formats()) {
     const auto pair = make_pair_of_packets(GetParam(), info.record, random);
     Victim victim(pair);
     for (const auto* packet : {&pair.keyframe, &pair.update}) {
