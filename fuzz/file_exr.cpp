@@ -30,16 +30,24 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     bool whole = false;
     std::size_t texels = 0;
     fuzz::accepted([&] {
-      const Dump dump = read_dump(file.path());
-      texels = dump.texels.size();
-      fuzz::check(texels == texture_bytes(dump.info.desc), "every texel is there");
+      const std::vector<Dump> images = read_dumps(file.path());
+      for (const Dump& image : images) {
+        texels += image.texels.size();
+        fuzz::check(image.texels.size() == texture_bytes(image.info.desc), "every texel is there");
+      }
       if (texels > std::size_t{1} << 20) return;  // Writing it takes too long.
-      const auto written = to_exr(dump.info, dump.texels, "x");
+      const auto written = to_exr(images, "x");
       const fuzz::MemoryFile copy(written);
-      const Dump again = read_dump(copy.path());
-      fuzz::check(again.texels == dump.texels && again.info.channels == dump.info.channels &&
-                      again.info.attributes == attributes_written(dump.info.attributes),
-                  "what was read is written and read as the same");
+      const std::vector<Dump> again = read_dumps(copy.path());
+      fuzz::check(again.size() == images.size(), "every image is written");
+      for (std::size_t i = 0; i < images.size(); ++i) {
+        const DumpInfo& info = images[i].info;
+        fuzz::check(again[i].texels == images[i].texels &&
+                        again[i].info.channels == info.channels &&
+                        again[i].info.image == info.image && again[i].info.place == info.place &&
+                        again[i].info.attributes == attributes_written(info.attributes),
+                    "what was read is written and read as the same");
+      }
       whole = true;
     });
     const std::size_t result = whole ? 16 * texels + (std::size_t{16} << 20) : 6 * kClaim;

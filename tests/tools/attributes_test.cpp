@@ -93,9 +93,9 @@ TEST(Attributes, DamagedTextIsRefused) {
         Attribute{"lineOrder", "int", "1"}, Attribute{"a", "stringvector", "0xffffff7f41"},
         Attribute{std::string(256, 'a'), "int", "1"},
         Attribute{std::string("a\0b", 3), "int", "1"}}) {
-    DumpInfo info = dump.info;
-    set_attribute(info.attributes, attribute);
-    EXPECT_THROW((void)to_exr(info, dump.texels, "x.exr"), Error)
+    Dump wrong = dump;
+    set_attribute(wrong.info.attributes, attribute);
+    EXPECT_THROW((void)to_exr({&wrong, 1}, "x.exr"), Error)
         << attribute.name << " " << attribute.type << " " << attribute.value;
   }
 }

@@ -20,7 +20,7 @@ void write_frames(const Program& program, const TextureDesc& desc, unsigned fram
     dump.texels[frame * 977U % (dump.texels.size() / 4) * 4] ^= std::byte{1};
     set_attribute(dump.info.attributes, {"gicodec:time", "float", fmt::format("{}", frame * 0.5)});
     const std::string path = program.path(fmt::format("in/vis.{:05}.exr", frame));
-    write_bytes(path, to_exr(dump.info, dump.texels, path));  // Without waiting for the disk.
+    write_bytes(path, to_exr({&dump, 1}, path));  // Without waiting for the disk.
   }
 }
 

@@ -105,6 +105,7 @@ TEST(Sequence, MissingFrames) {
   EXPECT_NE(message_of({"color.0000.exr", "color.0001.exr", "vis.0000.exr"}).find("vis.0001.exr"),
             std::string::npos);
   EXPECT_EQ(message_of({"color.0000.exr", "color.0002.exr", "vis.0001.exr"}, true), "");
+  EXPECT_EQ(message_of({"sky.exr", "color.0000.exr", "color.0001.exr"}), "");
 }
 
 TEST(Sequence, FramesTwice) {

@@ -16,6 +16,49 @@
 namespace gicodec::tools {
 namespace {
 
+/// A file for ktx-parse: its images, and what of it follows from them.
+struct Sent {
+  std::string name;
+  std::vector<Dump> images;
+  TextureHead head;
+};
+
+/// All images of a texture; `packed`: by ZLIB.
+Sent texture_of(const std::string& name, Format format, const TextureHead& head, bool packed) {
+  Sent sent{name, {}, head};
+  for (const ImagePlace& place : places_of(head)) {
+    const Grid records = records_of(level_texels(head, place.level), format);
+    const BlockShape block = head.volume ? BlockShape{4, 4, 4} : BlockShape{8, 8, 1};
+    const TextureDesc desc = map_texture(format, records, block);
+    Dump image{make_info(desc), random_texels(desc, place.level * 7 + place.face)};
+    image.info.head = sent.images.empty();
+    if (!image.info.head) image.info.attributes.clear();
+    if (image.info.head && packed) {
+      set_attribute(image.info.attributes, {kKtx2Scheme, "string", "ZLIB"});
+    }
+    image.info.place = place;
+    image.info.image = image_name(head, place);
+    sent.images.push_back(std::move(image));
+  }
+  // Of compressed blocks a file has full ones.
+  sent.head.texels = texels_of(sent.images[0].info.desc);
+  return sent;
+}
+
+/// All bytes of its levels, the largest first.
+std::vector<std::byte> level_data(const Sent& sent, Format format) {
+  std::vector<std::byte> all;
+  for (std::uint32_t level = 0; level < sent.head.levels; ++level) {
+    std::vector<std::byte> data(level_bytes(sent.head, level, format));
+    for (const Dump& image : sent.images) {
+      if (image.info.place.level != level) continue;
+      scatter(image.texels, runs_by_level(sent.head, image.info.place, format), data);
+    }
+    all.insert(all.end(), data.begin(), data.end());
+  }
+  return all;
+}
+
 TEST(TextureFileForeign, KtxParseReadsEveryFormatAndShape) {
   const std::string modules = GICODEC_NODE_MODULES;
   if (!std::filesystem::exists(modules + "/ktx-parse") ||
@@ -24,29 +67,51 @@ TEST(TextureFileForeign, KtxParseReadsEveryFormatAndShape) {
   }
   const TemporaryDirectory directory;
   nlohmann::json manifest;
-  std::vector<std::pair<std::string, Dump>> dumps;
+  std::vector<Sent> all;
+  const auto send = [&](Format format, const TextureHead& head, bool packed) {
+    const FormatInfo& info = *find_format(format);
+    const std::string name = fmt::format("{}-{}{}{}{}", info.name, to_string(head.texels),
+                                         head.levels > 1 ? "-mips" : "",
+                                         head.faces > 1 ? "-cube" : "", packed ? "-packed" : "");
+    const Sent sent = texture_of(name, format, head, packed);
+    write_dumps(directory.path(name + ".ktx2"), sent.images);
+    write_bytes(directory.path(name + ".texels"), level_data(sent, format));
+    const Grid& texels = sent.head.texels;
+    const Grid records = records_of(texels, format);
+    const bool layers = !head.volume && texels.z > 1;
+    manifest.push_back(
+        {{"name", name},
+         {"format", static_cast<std::uint32_t>(format)},
+         {"typeSize", ktx2_type_size(info.record)},
+         {"bytes", info.record.bytes},
+         {"size", {texels.x, texels.y, head.volume ? texels.z : 0, layers ? texels.z : 0}},
+         {"levels", head.levels},
+         {"faces", head.faces},
+         {"packed", packed},
+         {"keys",
+          {{"gicodec:vkFormat", fmt::format("VK_FORMAT_{}", info.name)},
+           {"gicodec:extent", fmt::format("{} {} {}", records.x, records.y, records.z)}}}});
+    all.push_back(sent);
+  };
+  const auto head_of = [](const Grid& texels, bool volume, std::uint32_t levels,
+                          std::uint32_t faces) {
+    TextureHead head;
+    head.texels = texels;
+    head.volume = volume;
+    head.levels = levels;
+    head.faces = faces;
+    return head;
+  };
   for (const FormatInfo& format : formats()) {
-    for (const auto& [records, block] : {std::pair(Grid{13, 7, 1}, BlockShape{8, 8, 1}),
-                                         {{5, 3, 4}, {8, 8, 1}},
-                                         {{5, 9, 7}, {4, 4, 4}}}) {
-      const TextureDesc desc = map_texture(format.record, records, block);
-      const Dump dump{make_info(desc), random_texels(desc, records.z)};
-      const std::string name = fmt::format("{}-{}", format.name, to_string(records));
-      write_dump(directory.path(name + ".ktx2"), dump.info, dump.texels);
-      write_bytes(directory.path(name + ".texels"), dump.texels);
-      const Grid texels = texels_of(desc);
-      const bool volume = is_volume(desc);
-      manifest.push_back(
-          {{"name", name},
-           {"format", static_cast<std::uint32_t>(format.record.format)},
-           {"typeSize", ktx2_type_size(format.record)},
-           {"bytes", format.record.bytes},
-           {"size",
-            {texels.x, texels.y, volume ? texels.z : 0, volume || texels.z == 1 ? 0 : texels.z}},
-           {"keys",
-            {{"gicodec:vkFormat", fmt::format("VK_FORMAT_{}", format.name)},
-             {"gicodec:extent", fmt::format("{} {} {}", records.x, records.y, records.z)}}}});
-      dumps.emplace_back(name, dump);
+    send(format.record.format, head_of({13, 7, 1}, false, 1, 1), false);
+  }
+  for (const Format format : {Format::R8G8B8A8_SRGB, Format::R16G16B16_SFLOAT,
+                              Format::BC1_RGBA_UNORM_BLOCK, Format::ASTC_6x5_UNORM_BLOCK}) {
+    for (const bool packed : {false, true}) {
+      send(format, head_of({24, 20, 1}, false, 5, 1), packed);
+      send(format, head_of({30, 30, 2}, false, 3, 6), packed);
+      send(format, head_of({24, 20, 3}, false, 2, 1), packed);
+      send(format, head_of({24, 20, 7}, true, 3, 1), packed);
     }
   }
   const std::string text = manifest.dump();
@@ -55,10 +120,14 @@ TEST(TextureFileForeign, KtxParseReadsEveryFormatAndShape) {
       fmt::format("node '{}' '{}' '{}'", GICODEC_KTX2_FOREIGN, modules, directory.path(""));
   ASSERT_EQ(std::system(command.c_str()), 0);
   // And what it writes is read here.
-  for (const auto& [name, dump] : dumps) {
-    const Dump back = read_dump(directory.path(name + ".again.ktx2"));
-    EXPECT_EQ(back.info.desc, dump.info.desc) << name;
-    EXPECT_EQ(back.texels, dump.texels) << name;
+  for (const Sent& sent : all) {
+    const std::vector<Dump> back = read_dumps(directory.path(sent.name + ".again.ktx2"));
+    ASSERT_EQ(back.size(), sent.images.size()) << sent.name;
+    for (std::size_t i = 0; i < back.size(); ++i) {
+      EXPECT_EQ(back[i].info.desc, sent.images[i].info.desc) << sent.name;
+      EXPECT_EQ(back[i].texels, sent.images[i].texels) << sent.name;
+      EXPECT_EQ(back[i].info.image, sent.images[i].info.image) << sent.name;
+    }
   }
 }
 
@@ -111,7 +180,7 @@ TEST(TextureFileForeign, OpenImageIoReadsMasks) {
   const std::string path = directory.path("x.dds");
   const TextureDesc desc = map_texture(Format::R8G8B8A8_UNORM, {5, 3, 1}, {8, 8, 1});
   Dump dump = random_dump(desc, 1);
-  std::vector<std::byte> header = dds_head({desc, {}, {}, {}, {}}, path);
+  std::vector<std::byte> header = dds_file({&dump, 1}, path);
   header.resize(128);
   const std::array<std::uint32_t, 7> masks = {0x41, 0, 32, 0xFF, 0xFF00, 0xFF0000, 0xFF000000};
   for (std::size_t i = 0; i < masks.size(); ++i) set_word(header, 80 + 4 * i, masks[i]);
@@ -127,8 +196,8 @@ TEST(TextureFileForeign, HeadersBeforeDx10) {
   const TemporaryDirectory directory;
   const std::string path = directory.path("x.dds");
   const auto read = [&](const TextureDesc& desc, const std::array<std::uint32_t, 7>& pixels) {
-    std::vector<std::byte> file =
-        dds_head({map_texture(Format::R32_UINT, {8, 4, 1}, {8, 8, 1}), {}, {}, {}, {}}, path);
+    const Dump any = random_dump(map_texture(Format::R32_UINT, {8, 4, 1}, {8, 8, 1}), 1);
+    std::vector<std::byte> file = dds_file({&any, 1}, path);
     file.resize(128);
     for (std::size_t i = 0; i < pixels.size(); ++i) set_word(file, 80 + 4 * i, pixels[i]);
     const auto texels = random_texels(desc, 1);
@@ -154,9 +223,14 @@ TEST(TextureFileForeign, HeadersBeforeDx10) {
             std::string::npos)
       << why;
   EXPECT_NE(why.find("--vk-format"), std::string::npos) << why;
-  // DXT1: 8 bytes for 4x4 texels, as of no format here.
-  why = read(map_texture(Format::R32_UINT, {4, 1, 1}, {8, 8, 1}), {0x4, 0x31545844, 0, 0, 0, 0, 0});
-  EXPECT_NE(why.find("D3D format 0x31545844 (DXT1)"), std::string::npos) << why;
+  const auto blocks = [](Format format) { return map_texture(format, {2, 1, 1}, {8, 8, 1}); };
+  EXPECT_EQ(read(blocks(Format::BC1_RGBA_UNORM_BLOCK), {0x4, 0x31545844, 0, 0, 0, 0, 0}), "");
+  EXPECT_EQ(read(blocks(Format::BC3_UNORM_BLOCK), {0x4, 0x35545844, 0, 0, 0, 0, 0}), "");
+  EXPECT_EQ(read(blocks(Format::BC5_UNORM_BLOCK), {0x4, 0x32495441, 0, 0, 0, 0, 0}), "");
+  // A code of 24 bytes for 8x4 texels, as of no format.
+  why = read(map_texture(Format::R8G8B8_UNORM, {8, 1, 1}, {8, 8, 1}),
+             {0x4, 0x59555932, 0, 0, 0, 0, 0});
+  EXPECT_NE(why.find("D3D format 0x59555932 (2YUY)"), std::string::npos) << why;
   EXPECT_EQ(why.find("--vk-format"), std::string::npos) << why;
 }
 

@@ -123,6 +123,13 @@ void ContainerInput::set_files(ImageKind kind) {
   }
 }
 
+void ContainerInput::drop_attribute(std::string_view name) {
+  for (StoredTexture& texture : textures_) {
+    std::erase_if(texture.info.attributes, [&](const auto& one) { return one.name == name; });
+    std::erase_if(texture.changes, [&](const auto& one) { return one.attribute.name == name; });
+  }
+}
+
 void ContainerInput::select(const std::vector<std::size_t>& textures) {
   selected_.assign(textures_.size(), false);
   for (const std::size_t texture : textures) selected_[texture] = true;

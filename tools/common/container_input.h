@@ -40,6 +40,8 @@ class ContainerInput {
 
   /// Makes all textures decode to files of that kind (file_forms.h).
   void set_files(ImageKind kind);
+  /// Makes no texture's files have an attribute.
+  void drop_attribute(std::string_view name);
   /// Plays only these textures and their presence textures, without reading others if the container
   /// can seek. Call it before the first frame.
   void select(const std::vector<std::size_t>& textures);

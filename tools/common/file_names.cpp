@@ -153,10 +153,11 @@ std::string file_stem(const StoredTexture& texture) {
     const std::size_t digits = texture.digits;
     rest += texture.separator.size() + (texture.made_of_files ? digits : std::max(digits, kNumber));
   }
-  return as_file_name(texture.name, kLongest - rest);
+  return as_file_name(texture.file, kLongest - rest);
 }
 
 bool names_meet(const StoredTexture& a, const StoredTexture& b) {
+  if (of_one_file(a, b)) return a.info.place == b.info.place && a.info.image == b.info.image;
   const auto others = names_of(b);
   return std::ranges::any_of(names_of(a), [&](const Names& own) {
     return std::ranges::any_of(others, [&](const Names& other) { return meet(own, other); });

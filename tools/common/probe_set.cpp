@@ -6,7 +6,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
 #include <charconv>
+#include <cstring>
+#include <fstream>
 
 namespace gicodec::tools {
 
@@ -73,6 +76,29 @@ std::uint64_t ProbeSet::size() const noexcept {
 bool ProbeSet::contains(std::uint32_t probe) const noexcept {
   const auto at = std::ranges::lower_bound(ranges_, probe, {}, &Range::last);
   return at != ranges_.end() && at->first <= probe;
+}
+
+/// Largest file of them: ranges take less, and a device has no end.
+static constexpr std::size_t kMaxInactiveBytes = std::size_t{64} << 20;
+
+ProbeSet read_probe_set(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string text;
+  while (file && text.size() <= kMaxInactiveBytes) {
+    constexpr std::size_t kStep = std::size_t{1} << 16;
+    const std::size_t before = text.size();
+    text.resize(before + kStep);
+    file.read(&text[before], kStep);
+    text.resize(before + static_cast<std::size_t>(file.gcount()));
+  }
+  if (!file.eof() && text.size() <= kMaxInactiveBytes) {
+    fail(Exit::io, "{}: cannot be read: {}", path, std::strerror(errno));
+  }
+  if (text.size() > kMaxInactiveBytes) {
+    fail(Exit::bad_input, "{}: has more than {} bytes; name probes by ranges a-b", path,
+         kMaxInactiveBytes);
+  }
+  return {text, path};
 }
 
 }  // namespace gicodec::tools

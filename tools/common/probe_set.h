@@ -34,4 +34,7 @@ class ProbeSet {
   std::vector<Range> ranges_;
 };
 
+/// Reads a text file of indices and ranges a-b.
+[[nodiscard]] ProbeSet read_probe_set(const std::string& path);
+
 }  // namespace gicodec::tools

@@ -28,36 +28,6 @@ Attribute attribute_from(std::string name, const std::string& text) {
   return {std::move(name), text.substr(0, blank), text.substr(blank + 1)};
 }
 
-void require_same_shape(const DumpInfo& first, const DumpInfo& other, const std::string& first_path,
-                        const std::string& path) {
-  if (other.desc != first.desc) {
-    const auto text = [](const TextureDesc& desc) {
-      return fmt::format("{}, grid {}, {}+{} texels, {}", record_text(desc.record),
-                         to_string(desc.grid), desc.block.x, 2 * desc.guard_band,
-                         gicodec::to_string(desc.layout.tiling));
-    };
-    fail(Exit::bad_input, "{}: has another shape than {}: {} instead of {}", path, first_path,
-         text(other.desc), text(first.desc));
-  }
-  if (other.channels != first.channels) {
-    fail(Exit::bad_input, "{}: has other channels than {}: {} instead of {}", path, first_path,
-         to_string(other.channels, other.desc.record.format),
-         to_string(first.channels, first.desc.record.format));
-  }
-}
-
-void add_changes(StoredTexture& texture, const Attributes& attributes, std::uint64_t frame) {
-  for (const Attribute& attribute : attributes) {
-    const Attribute* first = find_attribute(texture.info.attributes, attribute.name);
-    if (first == nullptr || *first != attribute) texture.changes.push_back({frame, attribute});
-  }
-  for (const Attribute& attribute : texture.info.attributes) {
-    if (find_attribute(attributes, attribute.name) == nullptr) {
-      texture.changes.push_back({frame, {attribute.name, "", ""}});
-    }
-  }
-}
-
 /// Reads the metadata "channel:R".
 void read_channel_name(StoredTexture& texture, const std::string& key, const std::string& name,
                        const std::string& path) {
@@ -128,6 +98,18 @@ void read_layout(TextureDesc& desc, const std::string& key, const std::string& v
   }
 }
 
+/// Reads "image": part, level and face, and "-" if another image has the file's attributes.
+void read_place(DumpInfo& info, std::string_view value, const std::string& path) {
+  info.head = !value.ends_with(" -");
+  if (!info.head) value.remove_suffix(2);
+  for (std::uint32_t* number : {&info.place.part, &info.place.level, &info.place.face}) {
+    const std::size_t blank = std::min(value.find(' '), value.size());
+    read_number(value.substr(0, blank), *number, "image", path);
+    value.remove_prefix(std::min(blank + 1, value.size()));
+  }
+  if (!value.empty()) fail(Exit::bad_input, "{}: metadata image is damaged", path);
+}
+
 /// Replaces attributes that follow from the texture by those read, which have unique names. Sorts
 /// them at once: inserting one by one takes quadratic time.
 void settle_attributes(StoredTexture& texture, Attributes read, const std::string& path) {
@@ -150,9 +132,9 @@ void settle_attributes(StoredTexture& texture, Attributes read, const std::strin
 }
 
 bool is_known(std::string_view key) {
-  constexpr std::array<std::string_view, 11> kKeys = {
-      "digits",     "extension", "separator", "channels", "slots",   "padding",
-      "file bytes", "encoder",   "dropped",   "lossy",    "inactive"};
+  constexpr std::array<std::string_view, 13> kKeys = {
+      "digits",  "file",       "image",   "extension", "separator", "channels", "slots",
+      "padding", "file bytes", "encoder", "dropped",   "lossy",     "inactive"};
   return key.starts_with("attribute:") || key.starts_with("attribute@") ||
          key.starts_with("channel:") || std::ranges::find(kKeys, key) != kKeys.end();
 }
@@ -197,46 +179,21 @@ std::string StoredTexture::loss() const {
   return fmt::format("texture {} was coded LOSSY ({})", name, lossy);
 }
 
-StoredTexture inspect(const Sequence& sequence, const Hints& hints) {
-  StoredTexture texture;
-  texture.name = from_file_name(sequence.name);
-  texture.made_of_files = true;
-  texture.digits = sequence.digits;
-  texture.extension = written_extension(sequence);
-  texture.separator = sequence.separator;
-
-  const FrameFile& first = sequence.frames.front();
-  texture.info = read_dump_info(first.path, hints);
-  if (const auto* lost = find_attribute(texture.info.attributes, kLossyAttribute)) {
-    texture.lossy = lost->value;
-    texture.largest_error = error_of(texture.lossy);
-  }
-  std::set<std::string> dropped;
-  for (const FrameFile& file : sequence.frames) {
-    const DumpInfo info = read_dump_info(file.path, hints);
-    for (const std::string& name : info.dropped) dropped.insert("attribute " + name);
-    for (const std::string& name : info.unused) dropped.insert("channel " + name);
-    std::error_code error;
-    const auto bytes = std::filesystem::file_size(file.path, error);
-    if (!error) texture.file_bytes += bytes;
-    if (&file == &first) continue;
-    require_same_shape(texture.info, info, first.path, file.path);
-    add_changes(texture, info.attributes, file.frame);
-  }
-  for (const std::string& name : dropped) {
-    texture.dropped += (texture.dropped.empty() ? "" : ", ") + name;
-  }
-  return texture;
-}
-
-std::string written_extension(const Sequence& sequence) {
-  return is_written(require_image_kind(sequence.frames.front().path)) ? sequence.extension : "exr";
+bool of_one_file(const StoredTexture& a, const StoredTexture& b) {
+  return a.made_of_files && b.made_of_files && a.file == b.file && a.extension == b.extension &&
+         a.separator == b.separator && a.digits == b.digits;
 }
 
 TextureEntry to_entry(const StoredTexture& texture) {
   TextureEntry entry{texture.name, texture.info.desc, 0, texture.largest_error, {}};
   Metadata& metadata = entry.metadata;
   metadata.emplace_back("digits", fmt::format("{}", texture.digits));
+  if (texture.file != texture.name) metadata.emplace_back("file", texture.file);
+  const ImagePlace& place = texture.info.place;
+  if (place != ImagePlace{} || !texture.info.head) {
+    metadata.emplace_back("image", fmt::format("{} {} {}{}", place.part, place.level, place.face,
+                                               texture.info.head ? "" : " -"));
+  }
   metadata.emplace_back("extension", texture.extension);
   if (texture.separator != ".") metadata.emplace_back("separator", texture.separator);
   const Record& record = texture.info.desc.record;
@@ -277,7 +234,7 @@ bool is_file_name(const std::string& name) {
 
 StoredTexture from_entry(const TextureEntry& entry, const std::string& path) {
   StoredTexture texture;
-  texture.name = entry.name;
+  texture.name = texture.file = entry.name;
   const std::string where = fmt::format("{}: texture {}", path, entry.name);
   TextureDesc desc = entry.desc;
   desc.layout = entry.desc.layout.tiling;
@@ -304,6 +261,10 @@ StoredTexture from_entry(const TextureEntry& entry, const std::string& path) {
       if (texture.digits > kMaxDigits) {
         fail(Exit::bad_input, "{}: metadata digits is damaged", where);
       }
+    } else if (key == "file") {
+      texture.file = value;
+    } else if (key == "image") {
+      read_place(texture.info, value, where);
     } else if (key == "extension") {
       if (value.size() > 16 || (!value.empty() && !is_file_name(value))) {
         fail(Exit::bad_input, "{}: metadata extension is damaged", where);
@@ -337,6 +298,11 @@ StoredTexture from_entry(const TextureEntry& entry, const std::string& path) {
     texture.lossy = error;
   } else if (!std::isinf(entry.largest_error) && texture.lossy.find(error) == std::string::npos) {
     texture.lossy += ", " + error;
+  }
+  if (texture.name.starts_with(texture.file + ".")) {
+    texture.info.image = texture.name.substr(texture.file.size() + 1);
+  } else if (texture.name != texture.file) {
+    fail(Exit::bad_input, "{}: metadata file is of another texture", where);
   }
   settle_attributes(texture, std::move(attributes), where);
   require_unique_channels(texture, where);

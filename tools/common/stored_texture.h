@@ -28,6 +28,7 @@ inline constexpr const char* kLossyAttribute = "gicodec:lossy";
 
 struct StoredTexture {
   std::string name;
+  std::string file;  ///< its files' name; textures of one file are its images, info.place says which
   unsigned digits = 4;
   std::string extension = "exr";
   std::string separator = ".";
@@ -38,7 +39,8 @@ struct StoredTexture {
   std::string lossy;                    ///< e.g. "qp=20"; empty for lossless
   float largest_error = 0;              ///< TextureEntry::largest_error
   std::string encoder;                  ///< of hevc, e.g. "libx265"; empty for other backends
-  std::string dropped;                  ///< attributes and channels of the files that were dropped
+  std::string dropped;                  ///< what of the files is not kept, in words
+  std::string dropped_in;               ///< the first file with some of that; not stored
   std::string unsaid;                   ///< attributes that its kind of file cannot hold
   std::uint64_t file_bytes = 0;         ///< of all files that it came from; 0: unknown
   bool made_of_files = false;           ///< it has the headers of its files
@@ -58,8 +60,12 @@ struct StoredTexture {
 /// Extension of the files that a sequence decodes to: its own, or EXR for images only read.
 [[nodiscard]] std::string written_extension(const Sequence& sequence);
 
-/// Reads the headers of all files of a sequence; throws if one does not fit the first.
-[[nodiscard]] StoredTexture inspect(const Sequence& sequence, const Hints& hints);
+/// Reads the headers of all files of a sequence: a texture for each image of a file. Colours are
+/// 10-bit codes if nothing says what they are and all of their values are. Throws if a file does not
+/// fit the first.
+[[nodiscard]] std::vector<StoredTexture> inspect(const Sequence& sequence, Hints hints);
+/// True if both are images of the same files.
+[[nodiscard]] bool of_one_file(const StoredTexture& a, const StoredTexture& b);
 
 /// True if files can have a texture's name: UTF-8 that a terminal shows unchanged, without
 /// directories, not hidden.

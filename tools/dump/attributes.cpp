@@ -1,9 +1,11 @@
 #include "dump/error.h"
 #include "dump/internal.h"
+#include "dump/texture_file.h"
 
 #include <OpenEXR/ImfAttribute.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIO.h>
+#include <OpenEXR/ImfOpaqueAttribute.h>
 #include <OpenEXR/ImfVersion.h>
 #include <gicodec/container.h>
 
@@ -13,25 +15,43 @@
 #include <charconv>
 #include <cstring>
 #include <memory>
+#include <set>
 #include <stdexcept>
 
 namespace gicodec::tools {
 namespace {
 
 // Attributes that size and channels imply; OpenEXR writes them itself.
-constexpr std::array<std::string_view, 7> kImplied = {"channels",   "dataWindow", "type", "version",
-                                                      "chunkCount", "tiles",      "name"};
+constexpr std::array<std::string_view, 2> kImplied = {"channels", "dataWindow"};
+// Those of files with several parts, and "name", which must be a text there.
+constexpr std::array<std::string_view, 2> kImpliedOfParts = {"type", "chunkCount"};
+// Those that OpenEXR reads as being of a type of its own; of another type the file is damaged.
+struct Typed {
+  std::string_view name, type;
+};
+constexpr std::array<Typed, 10> kTyped{{{"compression", "compression"},
+                                        {"lineOrder", "lineOrder"},
+                                        {"displayWindow", "box2i"},
+                                        {"pixelAspectRatio", "float"},
+                                        {"screenWindowCenter", "v2f"},
+                                        {"screenWindowWidth", "float"},
+                                        {"tiles", "tiledesc"},
+                                        {"name", "string"},
+                                        {"type", "string"},
+                                        {"chunkCount", "int"}}};
 
-// Types that are safe to pass to OpenEXR: their bytes hold no sizes for which it allocates memory.
-constexpr std::array<std::string_view, 24> kTypes = {
+// Types that OpenEXR may make objects of: their bytes hold no sizes for which it allocates memory.
+// Others pass as bytes.
+constexpr std::array<std::string_view, 25> kTypes = {
     "box2f",       "box2i",        "chromaticities",
     "compression", "double",       "envmap",
     "float",       "int",          "keycode",
     "lineOrder",   "m33d",         "m33f",
     "m44d",        "m44f",         "rational",
-    "string",      "stringvector", "timecode",
-    "v2d",         "v2f",          "v2i",
-    "v3d",         "v3f",          "v3i"};
+    "string",      "stringvector", "tiledesc",
+    "timecode",    "v2d",          "v2f",
+    "v2i",         "v3d",          "v3f",
+    "v3i"};
 
 constexpr std::size_t kMaxName = 255;
 
@@ -219,42 +239,80 @@ void set_attribute(Attributes& attributes, Attribute attribute) {
   }
 }
 
-void read_attributes(const Imf::Header& header, DumpInfo& info) {
-  const auto& window = header.dataWindow();
-  const Imf::Header usual(window.max.x + 1, window.max.y + 1);
-  for (auto at = header.begin(); at != header.end(); ++at) {
-    if (contains(kImplied, at.name())) continue;
-    const std::string type = at.attribute().typeName();
-    if (!contains(kTypes, type)) {
-      info.dropped.emplace_back(at.name());
+std::string text_of_name(std::string_view name) {
+  return is_utf8(name) && !name.starts_with("0x") ? std::string(name) : "0x" + to_hex(name);
+}
+
+std::string name_of_text(const std::string& text) {
+  std::string bytes;
+  return text.starts_with("0x") && from_hex(text.substr(2), bytes) ? bytes : text;
+}
+
+void read_attributes(const ExrPart& part, bool several, DumpInfo& info) {
+  const Imf::Header usual(static_cast<int>(part.width), static_cast<int>(part.height));
+  std::set<std::string_view> seen;
+  for (const ExrAttribute& attribute : part.attributes) {
+    const std::string& name = attribute.name;
+    if (contains(kImplied, name) || (several && contains(kImpliedOfParts, name))) continue;
+    if (!seen.insert(name).second || is_head_field(name)) {
+      info.lost.push_back((is_head_field(name) ? "attribute " : "a second attribute ") +
+                          text_of_name(name));
       continue;
     }
-    const std::string bytes = bytes_of(at.attribute());
-    // Drops attributes with the value of a default header.
-    const auto same = usual.find(at.name());
-    if (same != usual.end() && bytes_of(same.attribute()) == bytes) continue;
-    set_attribute(info.attributes, {at.name(), type, to_text(type, bytes)});
+    if (name == "compression" && attribute.bytes.size() == 1 && attribute.bytes[0] > 4) {
+      info.lost.push_back("its compression, which loses bits (ZIP comes back)");
+    }
+    // Attributes with the value of a default header follow.
+    const auto same = usual.find(name);
+    if (same != usual.end() && same.attribute().typeName() == attribute.type &&
+        bytes_of(same.attribute()) == attribute.bytes) {
+      continue;
+    }
+    set_attribute(info.attributes, {text_of_name(name), text_of_name(attribute.type),
+                                    to_text(attribute.type, attribute.bytes)});
   }
+  if (part.x != 0 || part.y != 0) {
+    set_attribute(info.attributes, {kExrOrigin, "v2i", fmt::format("{} {}", part.x, part.y)});
+  }
+  std::string linear;
+  for (const ExrChannel& channel : part.channels) {
+    if (channel.linear) linear += (linear.empty() ? "" : "\n") + text_of_name(channel.name);
+  }
+  if (!linear.empty()) set_attribute(info.attributes, {kExrLinear, "string", linear});
 }
 
 bool exr_has_attribute(const Attribute& attribute) {
   // OpenEXR would cut a longer name, or one that contains NUL.
-  return !contains(kImplied, attribute.name) && contains(kTypes, attribute.type) &&
-         !attribute.name.empty() && attribute.name.size() <= kMaxName &&
-         attribute.name.find('\0') == std::string::npos;
+  const std::string name = name_of_text(attribute.name), type = name_of_text(attribute.type);
+  const auto* const typed = std::ranges::find(kTyped, name, &Typed::name);
+  return !contains(kImplied, name) && (typed == kTyped.end() || typed->type == type) &&
+         !name.empty() && name.size() <= kMaxName && name.find('\0') == std::string::npos &&
+         !type.empty() && type.size() <= kMaxName && type.find('\0') == std::string::npos;
+}
+
+/// An attribute's object. Of a type that holds sizes it is one that only carries bytes.
+static std::unique_ptr<Imf::Attribute> object_of(const std::string& type) {
+  if (contains(kTypes, type)) {
+    return std::unique_ptr<Imf::Attribute>(Imf::Attribute::newAttribute(type.c_str()));
+  }
+  return std::make_unique<Imf::OpaqueAttribute>(type.c_str());
 }
 
 void set_attributes(Imf::Header& header, const Attributes& attributes, const std::string& path) {
   for (const Attribute& attribute : attributes) {
+    if (is_head_field(attribute.name)) continue;
     try {
       if (!exr_has_attribute(attribute)) throw std::invalid_argument("unknown name or type");
-      const std::string bytes = from_text(attribute.type, attribute.value);
-      const std::unique_ptr<Imf::Attribute> value(
-          Imf::Attribute::newAttribute(attribute.type.c_str()));
+      const std::string type = name_of_text(attribute.type);
+      const std::string bytes = from_text(type, attribute.value);
+      if (!contains(kTypes, type) && !is_sound_exr_value(type, bytes)) {
+        throw std::invalid_argument("not a value of this type");
+      }
+      const std::unique_ptr<Imf::Attribute> value = object_of(type);
       MemoryIn in(bytes);
       value->readValueFrom(in, static_cast<int>(bytes.size()), Imf::EXR_VERSION);
       if (!in.at_end()) throw std::invalid_argument("more bytes than the type has");
-      header.insert(attribute.name, *value);
+      header.insert(name_of_text(attribute.name), *value);
     } catch (const std::exception& error) {
       fail(Exit::bad_input, "{}: attribute {} of type {} cannot be written: {}", path,
            attribute.name, attribute.type, error.what());

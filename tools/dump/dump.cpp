@@ -24,7 +24,7 @@ void require_no_pipe(const std::string& path) {
        path);
 }
 
-Dump read(const std::string& path, const Hints& hints, bool texels) {
+std::vector<Dump> read(const std::string& path, const Hints& hints, bool texels) {
   const ImageKind kind = require_image_kind(path);
   require_no_pipe(path);
   if (kind == ImageKind::exr) return read_exr(path, hints, texels);
@@ -32,7 +32,17 @@ Dump read(const std::string& path, const Hints& hints, bool texels) {
                           : read_image(path, kind, hints, texels);
 }
 
+Dump only(std::vector<Dump> images, const std::string& path) {
+  if (images.size() == 1) return std::move(images.front());
+  fail(Exit::bad_input, "{}: holds {} images ({}), and one is expected", path, images.size(),
+       listed(images, [](const Dump& image) { return image_words(image.info); }));
+}
+
 }  // namespace
+
+std::string image_words(const DumpInfo& info) {
+  return info.image.empty() ? "its main image" : info.image;
+}
 
 std::optional<ImageKind> image_kind(const std::string& path) {
   const std::string ending = lower_case(std::filesystem::path(path).extension().string());
@@ -67,11 +77,40 @@ ImageKind require_image_kind(const std::string& path) {
        path);
 }
 
-DumpInfo read_dump_info(const std::string& path, const Hints& hints) {
-  return read(path, hints, false).info;
+std::vector<DumpInfo> read_dump_infos(const std::string& path, const Hints& hints) {
+  std::vector<DumpInfo> infos;
+  for (Dump& dump : read(path, hints, false)) infos.push_back(std::move(dump.info));
+  return infos;
 }
 
-Dump read_dump(const std::string& path, const Hints& hints) { return read(path, hints, true); }
+std::vector<Dump> read_dumps(const std::string& path, const Hints& hints) {
+  return read(path, hints, true);
+}
+
+DumpInfo read_dump_info(const std::string& path, const Hints& hints) {
+  return std::move(only(read(path, hints, false), path).info);
+}
+
+Dump read_dump(const std::string& path, const Hints& hints) {
+  return only(read(path, hints, true), path);
+}
+
+Hints settle_formats(std::span<const std::string> paths, Hints hints) {
+  for (const std::string& path : paths) {
+    if (hints.plain) break;
+    for (const DumpInfo& info : read_dump_infos(path, hints)) {
+      if (!info.guessed) continue;
+      try {
+        (void)read_dump(path, hints_of(info));
+      } catch (const Error& error) {
+        if (error.code() != Exit::bad_input) throw;
+        hints.plain = true;  // Or a damaged file, of which reading it again tells.
+        break;
+      }
+    }
+  }
+  return hints;
+}
 
 void check_texels(const DumpInfo& info, std::span<const std::byte> texels,
                   const std::string& path) {
@@ -81,14 +120,19 @@ void check_texels(const DumpInfo& info, std::span<const std::byte> texels,
        texture_bytes(info.desc));
 }
 
-void write_dump(const std::string& path, const DumpInfo& info, std::span<const std::byte> texels,
-                Existing existing) {
+void write_dumps(const std::string& path, std::span<const Dump> images, Existing existing) {
   const ImageKind kind = image_kind(path).value_or(ImageKind::exr);
   if (kind == ImageKind::exr || !is_written(kind)) {
-    write_file(path, to_exr(info, texels, path), existing);
+    write_file(path, to_exr(images, path), existing);
   } else {
-    write_texture_file(path, kind, info, texels, existing);
+    write_texture_file(path, kind, images, existing);
   }
+}
+
+void write_dump(const std::string& path, const DumpInfo& info, std::span<const std::byte> texels,
+                Existing existing) {
+  const Dump image{info, {texels.begin(), texels.end()}};
+  write_dumps(path, {&image, 1}, existing);
 }
 
 ChannelLayout default_channels(Format format) {
@@ -159,10 +203,9 @@ Hints hints_of(const TextureDesc& desc) {
 
 Hints hints_of(const DumpInfo& info) {
   Hints hints = hints_of(info.desc);
-  const auto& names = info.channels.names;
-  if (std::all_of(names.begin(), names.end(), [](const auto& name) { return name.empty(); })) {
-    return hints;
-  }
+  hints.place = info.place;
+  hints.image = info.image;
+  hints.head = info.head;
   const Record& record = info.desc.record;
   for (std::size_t i = 0; i < record.count; ++i) {
     const char name = letter(record.components[i]);
@@ -173,7 +216,9 @@ Hints hints_of(const DumpInfo& info) {
 }
 
 DumpInfo make_info(const TextureDesc& desc) {
-  DumpInfo info{desc, default_channels(desc.record.format), {}, {}, {}};
+  DumpInfo info;
+  info.desc = desc;
+  info.channels = default_channels(desc.record.format);
   describe(info.attributes, desc);
   return info;
 }

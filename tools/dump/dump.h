@@ -1,6 +1,7 @@
-// Dumps: one file holds one frame of one texture (gicodec(1), "Dumps"). EXR, DDS, KTX2 and raw
-// files keep every bit. PNG, TIFF and DPX are only read, if each sample is an exact code. All
-// functions throw Error. Several threads may use different files.
+// Dumps: one file holds one frame of one texture, or of several: parts, layers, mip levels, faces
+// (gicodec(1), "Dumps"). EXR, DDS, KTX2 and raw files keep every bit. PNG, TIFF and DPX are only
+// read, if each sample is an exact code. All functions throw Error. Several threads may use
+// different files.
 #pragma once
 
 #include "dump/file.h"
@@ -86,17 +87,31 @@ struct ChannelLayout {
 [[nodiscard]] std::optional<ChannelLayout> channels_from_string(std::string_view text,
                                                                 Format format);
 
-/// Removes attributes that depend on the size of the file, which is about to change.
-void drop_size_fields(Attributes& attributes);
+/// Removes attributes that depend on the size of the file, which is about to change. Returns the
+/// names of those that do not follow from the new size.
+std::vector<std::string> drop_size_fields(Attributes& attributes);
 
-/// A file's contents besides texels.
+/// Where an image stands in its file. Images of one place have channels of different names.
+struct ImagePlace {
+  std::uint32_t part = 0;   ///< of an EXR
+  std::uint32_t level = 0;  ///< mip level
+  std::uint32_t face = 0;   ///< of a cube map, in the file's order
+  friend auto operator<=>(const ImagePlace&, const ImagePlace&) = default;
+};
+
+/// An image's contents besides texels.
 struct DumpInfo {
   TextureDesc desc;
   ChannelLayout channels;
-  Attributes attributes;             ///< those that size and channels do not imply
-  std::vector<std::string> dropped;  ///< names of attributes whose types are not kept: pictures,
-                                     ///< types unknown to OpenEXR
-  std::vector<std::string> unused;   ///< names of channels that Hints::channels ignores
+  Attributes attributes;          ///< those that size and channels do not imply
+  std::vector<std::string> lost;  ///< what is not kept, in words: "channel Z", "its metadata"
+  /// The image's name in its file, unique there: "py", "mip1", "diffuse". Empty: the main one.
+  std::string image = {};
+  ImagePlace place = {};
+  /// False: it has no attributes, since an image before it has those of the file, or part.
+  bool head = true;
+  bool guessed = false;    ///< its format is the 10-bit codes that its values may be
+  bool fell_back = false;  ///< by Hints::plain it is not
 };
 
 struct Dump {
@@ -120,9 +135,18 @@ struct Hints {
   std::optional<Grid> extent;  ///< texels, of a map_texture(); for images of stacked slices
   std::map<char, std::string>
       channels;  ///< component → the file's channel; if not empty, others are ignored
+  /// With desc: the image to read; `channels` are then exactly its own.
+  std::optional<ImagePlace> place;
+  std::string image = {};
+  bool head = true;
+  /// Formats that follow from channels are floats or integers, not 10-bit codes.
+  bool plain = false;
 };
 
-/// Hints that demand a texture, in any format of the file; from an info also its channels' names.
+/// "its main image", or its name, for messages.
+[[nodiscard]] std::string image_words(const DumpInfo& info);
+
+/// Hints that demand a texture, in any format of the file; from an info also its image.
 [[nodiscard]] Hints hints_of(const DumpInfo& info);
 [[nodiscard]] Hints hints_of(const TextureDesc& desc);
 /// An info with default_channels() and the gicodec:* attributes by which a file of this texture is
@@ -153,15 +177,28 @@ enum class ImageKind : std::uint8_t { exr, png, tiff, dpx, dds, ktx2, raw };
 /// With a grid the texture is of probes: the core follows from the image's size, guard band 1,
 /// tiling atlas_xy_z. Without one it is a map_texture() if it is a texture file or has a block or
 /// extent; blocks are 8x8x1 records by default, 4x4x4 of a 3D texture.
+[[nodiscard]] std::vector<DumpInfo> read_dump_infos(const std::string& path,
+                                                    const Hints& hints = {});
+[[nodiscard]] std::vector<Dump> read_dumps(const std::string& path, const Hints& hints = {});
+/// The same of a file with one image, or of the one that the hints name; throws if there are
+/// others.
 [[nodiscard]] DumpInfo read_dump_info(const std::string& path, const Hints& hints = {});
 [[nodiscard]] Dump read_dump(const std::string& path, const Hints& hints = {});
 
-/// A scanline EXR with slices below each other. Attributes set compression and line order; ZIP if
+/// Hints by which the files' colours are read: 10-bit codes if nothing says what they are and all
+/// values of all files are such; else floats or integers as the files have them (Hints::plain).
+[[nodiscard]] Hints settle_formats(std::span<const std::string> paths, Hints hints);
+
+/// An EXR with slices below each other. Attributes set tiles, compression and line order; ZIP if
 /// they name no compression or a lossy one.
-[[nodiscard]] std::vector<std::byte> to_exr(const DumpInfo& info, std::span<const std::byte> texels,
+[[nodiscard]] std::vector<std::byte> to_exr(std::span<const Dump> images,
                                             const std::string& path_for_messages);
 /// Writes a file of the kind of its extension atomically, EXR for kinds that are only read. Writes
-/// the sidecar of a raw file, unless one with the same contents exists.
+/// the sidecar of a raw file, unless one with the same contents exists. `images`: all of the file,
+/// in its order.
+void write_dumps(const std::string& path, std::span<const Dump> images,
+                 Existing existing = Existing::refuse);
+/// The same of one image.
 void write_dump(const std::string& path, const DumpInfo& info, std::span<const std::byte> texels,
                 Existing existing = Existing::refuse);
 

@@ -1,12 +1,14 @@
-// Checks the bytes of an EXR header before OpenEXR reads them, because OpenEXR allocates by the
-// header's sizes.
+#include "dump/exr_header.h"
+
 #include "dump/error.h"
 #include "dump/internal.h"
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <memory>
@@ -19,8 +21,11 @@ namespace {
 
 constexpr std::uint32_t kMagic = 20000630;
 constexpr std::uint32_t kTiled = 0x200, kNonImage = 0x800, kMultiPart = 0x1000;
-constexpr std::int64_t kMaxHeaderBytes = 16 << 20;
+constexpr std::int64_t kMaxHeaderBytes = 64 << 20;
+constexpr std::size_t kMaxParts = 256;
 constexpr std::size_t kMaxName = 255;
+/// No lossless compression makes an image smaller by more; DWA does, which loses bits.
+constexpr std::uint64_t kRatio = 2000, kDwaRatio = 100000;
 
 /// Bytes of a type's value. OpenEXR reads as many whatever the header's size is, and goes on from
 /// there. If the two differ, it would read another header than the one checked here.
@@ -39,6 +44,27 @@ constexpr std::array<TypeSize, 24> kSizes{{
     {"v3i", 12},        {"tiledesc", 9}, {"deepImageState", 1},
 }};
 
+/// A list of strings, each with its length.
+bool are_strings(std::string_view bytes) {
+  while (!bytes.empty()) {
+    std::uint32_t size = 0;
+    if (bytes.size() < sizeof size) return false;
+    std::memcpy(&size, bytes.data(), sizeof size);
+    bytes.remove_prefix(sizeof size);
+    if (size > bytes.size()) return false;
+    bytes.remove_prefix(size);
+  }
+  return true;
+}
+
+/// Width, height, and so many texels of four bytes.
+bool is_preview(std::string_view bytes) {
+  std::uint32_t size[2] = {};
+  if (bytes.size() < sizeof size || bytes.size() % 4 != 0) return false;
+  std::memcpy(size, bytes.data(), sizeof size);
+  return std::uint64_t{size[0]} * size[1] == (bytes.size() - sizeof size) / 4;
+}
+
 struct Close {
   void operator()(std::FILE* file) const { std::fclose(file); }
 };
@@ -50,26 +76,65 @@ class HeaderWalk {
     if (!file_) fail(Exit::io, "{}: cannot be opened: {}", path_, std::strerror(errno));
   }
 
-  void run() {
-    if (word() != kMagic) fail(Exit::bad_input, "{}: is not an EXR file", path_);
+  std::vector<ExrPart> run() {
+    if (word() != kMagic) fail(Exit::bad_input, "{}: is not an EXR file{}", path_, pointer());
     const std::uint32_t version = word();
     if ((version & 0xFF) != 2) {
       fail(Exit::bad_input, "{}: EXR version {} is not supported", path_, version & 0xFF);
     }
-    const char* kind = (version & kMultiPart)  ? "multi-part"
-                       : (version & kNonImage) ? "deep"
-                       : (version & kTiled)    ? "tiled"
-                                               : nullptr;
-    if (kind != nullptr) {
-      fail(Exit::bad_input, "{}: is a {} EXR; a probe dump is a single-part scanline image", path_,
-           kind);
+    const bool several = (version & kMultiPart) != 0;
+    if ((version & kNonImage) != 0 && !several) fail_deep("");
+    std::vector<ExrPart> parts;
+    for (std::string name = text(); !name.empty(); name = several ? text() : "") {
+      part_ = {};
+      part_.tiled = (version & kTiled) != 0;
+      lines_ = 1;
+      texel_bytes_ = 0;
+      for (; !name.empty(); name = text()) attribute(name);
+      finish_part();
+      parts.push_back(std::move(part_));
+      if (parts.size() > kMaxParts) {
+        fail(Exit::bad_input, "{}: has more than {} parts", path_, kMaxParts);
+      }
     }
-    for (std::string name = text(); !name.empty(); name = text()) attribute(name);
-    // OpenEXR holds all lines of a compressed block, even if the image has fewer.
-    check_image_bytes(std::max(area_, width_ * lines_) * texel_bytes_, path_);
+    if (parts.empty()) fail(Exit::bad_input, "{}: its EXR header is empty", path_);
+    check_image_bytes(bytes_, dwa_ ? kDwaRatio : kRatio, path_);
+    return parts;
   }
 
  private:
+  [[noreturn]] void fail_deep(const std::string& part) const {
+    fail(Exit::bad_input,
+         "{}: {}holds deep data, of several samples a texel, which no texture is; flatten it, as "
+         "oiiotool --flatten does",
+         path_, part.empty() ? "" : fmt::format("part {} ", part));
+  }
+  /// A file of three lines in place of a large one.
+  [[nodiscard]] const char* pointer() {
+    std::rewind(file_.get());
+    std::array<char, 24> start{};
+    const std::size_t got = std::fread(start.data(), 1, start.size(), file_.get());
+    return std::string_view(start.data(), got).starts_with("version https://git-lfs")
+               ? ", but a pointer of Git LFS to one; \"git lfs pull\" fetches it"
+               : "";
+  }
+
+  void finish_part() {
+    if (part_.width == 0) fail(Exit::bad_input, "{}: its EXR header lacks dataWindow", path_);
+    if (part_.channels.empty()) fail(Exit::bad_input, "{}: has no channels", path_);
+    if (part_.levels > 1) {
+      const std::uint32_t side = std::max(part_.width, part_.height);
+      part_.levels = static_cast<std::uint32_t>(part_.round_up ? std::bit_width(side - 1) + 1
+                                                               : std::bit_width(side));
+    }
+    // OpenEXR holds all lines of a compressed block, even if the image has fewer.
+    const std::uint64_t area = std::uint64_t{part_.width} * part_.height;
+    const std::uint64_t all =
+        part_.levels > 1 ? area + area / 2 + part_.width + part_.height : area;
+    bytes_ += std::max(all, std::max<std::uint64_t>(lines_ * part_.width, tile_)) * texel_bytes_;
+    tile_ = 0;
+  }
+
   void attribute(const std::string& name) {
     if (++attributes_ > kMaxAttributes) {
       fail(Exit::bad_input, "{}: has more than {} attributes", path_, kMaxAttributes);
@@ -79,32 +144,62 @@ class HeaderWalk {
     if (size < 0 || size > kMaxHeaderBytes) {
       fail(Exit::bad_input, "{}: attribute {} claims {} bytes", path_, name, size);
     }
-    if (type == "idmanifest") {
-      fail(Exit::bad_input, "{}: attribute {} has a type only deep images use", path_, name);
+    // Its parts are packed, so that their sizes are not known here.
+    if (type == "idmanifest" || (type == "chlist" && name != "channels")) {
+      fail(Exit::bad_input,
+           "{}: attribute {} of type {} is not supported; write the file without it, as "
+           "oiiotool --eraseattrib does",
+           path_, name, type);
     }
-    std::string bytes(static_cast<std::size_t>(size), '\0');
-    read(bytes.data(), bytes.size());
-    const auto* known = std::ranges::find(kSizes, type, &TypeSize::type);
-    if (known != kSizes.end() && known->size != bytes.size()) damaged(name);
-    if (type == "floatvector" && bytes.size() % 4 != 0) damaged(name);
-    if (type == "stringvector") strings(name, bytes);
+    std::string bytes = take(static_cast<std::size_t>(size));
+    if (type != "chlist" && !is_sound_exr_value(type, bytes)) damaged(name);
     if (type == "box2i" && name == "dataWindow") data_window(bytes);
     if (type == "chlist") channels(bytes);
     if (type == "compression") compression(bytes);
-    if (type == "preview") preview(bytes);
+    if (type == "tiledesc" && name == "tiles") tiles(bytes);
+    if (type == "string" && name == "name") part_.name = bytes;
+    if (type == "string" && name == "type") part_type(bytes);
+    part_.attributes.push_back({name, type, std::move(bytes)});
+  }
+
+  void part_type(const std::string& type) {
+    if (type.starts_with("deep")) fail_deep(part_.name);
+    part_.tiled = part_.tiled || type == "tiledimage";
+  }
+
+  void tiles(std::string_view bytes) {
+    std::array<std::uint32_t, 2> size{};
+    std::memcpy(size.data(), bytes.data(), sizeof size);
+    const auto mode = static_cast<unsigned char>(bytes[8]);
+    const unsigned levels = mode & 0xF, rounding = mode >> 4;
+    constexpr unsigned kMipmaps = 1, kRipmaps = 2;
+    if (size[0] == 0 || size[1] == 0 || size[0] > kMaxImageSide || size[1] > kMaxImageSide ||
+        levels > kRipmaps || rounding > 1) {
+      damaged("tiles");
+    }
+    if (levels == kRipmaps) {
+      fail(Exit::bad_input,
+           "{}: is ripmapped: it has levels of every width with every height; write it with one "
+           "level or mipmaps, as maketx does",
+           path_);
+    }
+    part_.round_up = rounding == 1;
+    part_.levels = levels == kMipmaps ? 2 : 1;  // Their number follows from the window.
+    tile_ = std::uint64_t{size[0]} * size[1];
   }
 
   /// A list of names, each with type, flags and two sampling steps.
   void channels(std::string_view bytes) {
     constexpr std::size_t kFields = 16, kMaxChannels = 256;
     std::uint64_t size = 0;
-    std::size_t count = 0;
+    part_.channels.clear();
     while (!bytes.empty() && bytes.front() != '\0') {
       const std::size_t name = bytes.find('\0');
       if (name == std::string_view::npos || bytes.size() - name - 1 < kFields) break;
-      size += bytes[name + 1] == 1 ? 2 : 4;  // HALF, else UINT or FLOAT
+      part_.channels.push_back(channel(bytes.substr(0, name), bytes.substr(name + 1, kFields)));
+      size += part_.channels.back().type == SampleType::half ? 2 : 4;
       bytes.remove_prefix(name + 1 + kFields);
-      if (++count > kMaxChannels) {
+      if (part_.channels.size() > kMaxChannels) {
         fail(Exit::bad_input, "{}: has more than {} channels", path_, kMaxChannels);
       }
     }
@@ -112,6 +207,20 @@ class HeaderWalk {
       fail(Exit::bad_input, "{}: its list of channels is damaged", path_);
     }
     texel_bytes_ = std::max(texel_bytes_, size);
+  }
+
+  ExrChannel channel(std::string_view name, std::string_view fields) const {
+    constexpr std::array<SampleType, 3> kTypes = {SampleType::uint32, SampleType::half,
+                                                  SampleType::float32};
+    constexpr std::uint32_t kMaxSampling = 1024;
+    std::array<std::uint32_t, 4> words{};
+    std::memcpy(words.data(), fields.data(), sizeof words);
+    const auto [type, linear, x, y] = words;
+    if (type >= kTypes.size() || x == 0 || y == 0 || x > kMaxSampling || y > kMaxSampling) {
+      fail(Exit::bad_input, "{}: its list of channels is damaged: channel {} of type {}, {}x{}",
+           path_, name, type, x, y);
+    }
+    return {std::string(name), kTypes[type], (linear & 0xFF) != 0, x, y};
   }
 
   void data_window(const std::string& bytes) {
@@ -123,12 +232,15 @@ class HeaderWalk {
         static_cast<std::uint64_t>(width * height) > kMaxImageBytes / 4) {
       fail(Exit::bad_input, "{}: an image of {}x{} texels is not supported", path_, width, height);
     }
-    area_ = std::max(area_, static_cast<std::uint64_t>(width * height));
-    width_ = std::max(width_, static_cast<std::uint64_t>(width));
-    if (box[0] != 0 || box[1] != 0) {
-      fail(Exit::bad_input, "{}: the data window starts at ({}, {}), not at (0, 0)", path_, box[0],
+    constexpr std::int32_t kFar = 1 << 29;  // OpenEXR's own limit is near.
+    if (std::abs(std::int64_t{box[0]}) > kFar || std::abs(std::int64_t{box[1]}) > kFar) {
+      fail(Exit::bad_input, "{}: a data window from ({}, {}) on is not supported", path_, box[0],
            box[1]);
     }
+    part_.x = box[0];
+    part_.y = box[1];
+    part_.width = static_cast<std::uint32_t>(width);
+    part_.height = static_cast<std::uint32_t>(height);
   }
 
   /// Lines per block by compression: none, rle, zips, zip, piz, pxr24, b44, b44a, dwaa, dwab.
@@ -148,27 +260,7 @@ class HeaderWalk {
            path_, number);
     }
     lines_ = std::max(lines_, kLines[number]);
-  }
-
-  void preview(const std::string& bytes) {
-    std::uint32_t size[2] = {};
-    if (bytes.size() >= sizeof size) std::memcpy(size, bytes.data(), sizeof size);
-    if (bytes.size() < sizeof size || std::uint64_t{size[0]} * size[1] != (bytes.size() - 8) / 4 ||
-        bytes.size() % 4 != 0) {
-      fail(Exit::bad_input, "{}: its preview picture is damaged", path_);
-    }
-  }
-
-  /// A list of strings, each with its length.
-  void strings(const std::string& name, std::string_view bytes) {
-    while (!bytes.empty()) {
-      std::uint32_t size = 0;
-      if (bytes.size() < sizeof size) damaged(name);
-      std::memcpy(&size, bytes.data(), sizeof size);
-      bytes.remove_prefix(sizeof size);
-      if (size > bytes.size()) damaged(name);
-      bytes.remove_prefix(size);
-    }
+    dwa_ = dwa_ || number >= 8;
   }
 
   [[noreturn]] void damaged(const std::string& name) const {
@@ -192,6 +284,18 @@ class HeaderWalk {
     return word;
   }
 
+  /// Reads in steps, so that memory does not outgrow the file.
+  std::string take(std::size_t size) {
+    constexpr std::size_t kStep = std::size_t{1} << 20;
+    std::string bytes;
+    while (bytes.size() < size) {
+      const std::size_t before = bytes.size();
+      bytes.resize(std::min(size, before + kStep));
+      read(&bytes[before], bytes.size() - before);
+    }
+    return bytes;
+  }
+
   void read(void* into, std::size_t size) {
     if (std::fread(into, 1, size, file_.get()) == size) {
       walked_ += static_cast<std::int64_t>(size);
@@ -208,21 +312,42 @@ class HeaderWalk {
   std::unique_ptr<std::FILE, Close> file_;
   std::int64_t walked_ = 0;
   std::size_t attributes_ = 0;
+  ExrPart part_;
   /// The largest values, if an attribute occurs several times.
-  std::uint64_t area_ = 0, width_ = 0, texel_bytes_ = 0, lines_ = 1;
+  std::uint64_t texel_bytes_ = 0, lines_ = 1, tile_ = 0;
+  std::uint64_t bytes_ = 0;  ///< of the samples of all parts
+  bool dwa_ = false;
 };
 
 }  // namespace
 
-void check_image_bytes(std::uint64_t bytes, const std::string& path) {
-  constexpr std::uint64_t kFree = std::uint64_t{64} << 20, kRatio = 2000;
-  std::error_code error;
-  const auto size = std::filesystem::file_size(path, error);
-  if (error || bytes <= kFree || bytes / kRatio <= size) return;
-  fail(Exit::bad_input, "{}: claims {} bytes of samples, more than its {} bytes can hold", path,
-       bytes, size);
+Grid ExrPart::level_size(std::uint32_t level) const noexcept {
+  const auto side = [&](std::uint32_t all) {
+    const std::uint64_t up = round_up ? (std::uint64_t{1} << level) - 1 : 0;
+    return static_cast<std::uint32_t>(std::max<std::uint64_t>(1, (all + up) >> level));
+  };
+  return {side(width), side(height), 1};
 }
 
-void check_exr_header(const std::string& path) { HeaderWalk(path).run(); }
+void check_image_bytes(std::uint64_t bytes, std::uint64_t ratio, const std::string& path) {
+  constexpr std::uint64_t kFree = std::uint64_t{64} << 20;
+  std::error_code error;
+  const auto size = std::filesystem::file_size(path, error);
+  if (error || bytes <= kFree || (bytes / ratio <= size && bytes <= kMaxImageBytes)) return;
+  fail(Exit::bad_input,
+       "{}: claims {} bytes of samples; its {} bytes hold {} at most, and images may have {}", path,
+       bytes, size, size * ratio, kMaxImageBytes);
+}
+
+bool is_sound_exr_value(std::string_view type, std::string_view bytes) noexcept {
+  const auto* known = std::ranges::find(kSizes, type, &TypeSize::type);
+  if (known != kSizes.end()) return known->size == bytes.size();
+  if (type == "floatvector") return bytes.size() % 4 == 0;
+  if (type == "stringvector") return are_strings(bytes);
+  if (type == "preview") return is_preview(bytes);
+  return type != "idmanifest" && type != "chlist";
+}
+
+std::vector<ExrPart> read_exr_header(const std::string& path) { return HeaderWalk(path).run(); }
 
 }  // namespace gicodec::tools

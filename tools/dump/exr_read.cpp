@@ -1,11 +1,12 @@
 #include "dump/error.h"
-#include "dump/internal.h"
+#include "dump/exr_images.h"
 
 #include <Imath/ImathBox.h>
-#include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
-#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfInputPart.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
+#include <OpenEXR/ImfTiledInputPart.h>
 
 #include <algorithm>
 #include <array>
@@ -15,29 +16,6 @@
 
 namespace gicodec::tools {
 namespace {
-
-SampleType sample_type(Imf::PixelType type) {
-  switch (type) {
-    case Imf::UINT:
-      return SampleType::uint32;
-    case Imf::HALF:
-      return SampleType::half;
-    default:
-      return SampleType::float32;
-  }
-}
-
-std::vector<FoundChannel> channels_of(const Imf::Header& header, const std::string& path) {
-  std::vector<FoundChannel> found;
-  for (auto at = header.channels().begin(); at != header.channels().end(); ++at) {
-    const Imf::Channel& channel = at.channel();
-    if (channel.xSampling != 1 || channel.ySampling != 1) {
-      fail(Exit::bad_input, "{}: channel {} is subsampled", path, at.name());
-    }
-    found.push_back({at.name(), sample_type(channel.type)});
-  }
-  return found;
-}
 
 Imf::PixelType pixel_type(SampleType type) {
   return type == SampleType::uint32 ? Imf::UINT : type == SampleType::half ? Imf::HALF : Imf::FLOAT;
@@ -97,47 +75,73 @@ void add_values(Dump& dump, const std::vector<std::vector<char>>& planes, const 
   }
 }
 
-void read_texels(Imf::InputFile& file, Dump& dump, const std::string& path) {
-  const Record& record = dump.info.desc.record;
-  const Extent size = image_extent(dump.info.desc);
-  std::vector<std::vector<char>> planes(record.count);
+/// Where an image's samples are read to.
+Imf::FrameBuffer frame_buffer(const ExrImage& image, const Imath::Box2i& window,
+                              std::vector<std::vector<char>>& planes) {
+  const DumpInfo& info = image.info;
+  const Record& record = info.desc.record;
+  const Extent size = image_extent(info.desc);
+  planes.resize(record.count);
   Imf::FrameBuffer target;
   for (std::size_t i = 0; i < planes.size(); ++i) {
-    if (!has_channel(dump.info.channels, record.components[i])) continue;
-    const SampleType type = dump.info.channels.types[i];
-    planes[i].resize(std::size_t{size.width} * size.height * sample_bytes(type));
-    target.insert(channel_name(dump.info.channels, record.format, i),
-                  Imf::Slice(pixel_type(type), planes[i].data(), sample_bytes(type),
-                             sample_bytes(type) * size.width));
+    if (!has_channel(info.channels, record.components[i])) continue;
+    const SampleType type = info.channels.types[i];
+    const std::size_t bytes = sample_bytes(type);
+    planes[i].resize(std::size_t{size.width} * size.height * bytes);
+    target.insert(
+        name_of_text(channel_name(info.channels, record.format, i)),
+        Imf::Slice::Make(pixel_type(type), planes[i].data(), window, bytes, bytes * size.width,
+                         static_cast<int>(image.x_sampling), static_cast<int>(image.y_sampling)));
   }
-  file.setFrameBuffer(target);
-  file.readPixels(0, static_cast<int>(size.height) - 1);
+  return target;
+}
 
+std::vector<std::byte> read_texels(Imf::MultiPartInputFile& file, const ExrPart& part,
+                                   const ExrImage& image, const std::string& path) {
+  const auto place = image.info.place;
+  std::vector<std::vector<char>> planes;
+  const auto number = static_cast<int>(place.part), level = static_cast<int>(place.level);
+  if (part.tiled) {
+    Imf::TiledInputPart tiles(file, number);
+    tiles.setFrameBuffer(frame_buffer(image, tiles.dataWindowForLevel(level), planes));
+    tiles.readTiles(0, tiles.numXTiles(level) - 1, 0, tiles.numYTiles(level) - 1, level);
+  } else {
+    Imf::InputPart lines(file, number);
+    const Imath::Box2i window = lines.header().dataWindow();
+    lines.setFrameBuffer(frame_buffer(image, window, planes));
+    lines.readPixels(window.min.y, window.max.y);
+  }
+  Dump dump{image.info, {}};
   dump.texels.resize(static_cast<std::size_t>(texture_bytes(dump.info.desc)));
-  if (!dump.info.channels.exponent) return add_values(dump, planes, path);
+  if (!dump.info.channels.exponent) {
+    add_values(dump, planes, path);
+    return std::move(dump.texels);
+  }
   for (std::size_t i = 0; i < planes.size(); ++i) {
     if (!planes[i].empty()) add_channel(dump, i, planes[i].data(), path);
   }
+  return std::move(dump.texels);
 }
 
 }  // namespace
 
-Dump read_exr(const std::string& path, const Hints& hints, bool texels) {
-  check_exr_header(path);
+std::vector<Dump> read_exr(const std::string& path, const Hints& hints, bool texels) {
+  const std::vector<ExrPart> parts = read_exr_header(path);
   try {
-    Imf::InputFile file(path.c_str(), 0);
-    const Imf::Header& header = file.header();
-    const auto window = header.dataWindow();
-    Dump dump;
-    read_attributes(header, dump.info);
-    FoundImage found;
-    found.texels = {static_cast<std::uint32_t>(window.max.x + 1),
-                    static_cast<std::uint32_t>(window.max.y + 1), 1};
-    found.channels = channels_of(header, path);
-    resolve(dump.info, found, hints, path);
-    if (!file.isComplete()) fail(Exit::bad_input, "{}: is truncated", path);
-    if (texels) read_texels(file, dump, path);
-    return dump;
+    const std::vector<ExrImage> images = images_of(parts, hints, path);
+    Imf::MultiPartInputFile file(path.c_str(), 0);
+    std::vector<Dump> dumps;
+    for (const ExrImage& image : images) {
+      Dump& dump = dumps.emplace_back(Dump{image.info, {}});
+      const std::uint32_t part = image.info.place.part;
+      // Where the table of places is missing OpenEXR finds lines and tiles by looking, so that only
+      // reading shows whether all are there.
+      if (texels || !file.partComplete(static_cast<int>(part))) {
+        dump.texels = read_texels(file, parts[part], image, path);
+      }
+      if (!texels) dump.texels = {};
+    }
+    return dumps;
   } catch (const Error&) {
     throw;
   } catch (const std::bad_alloc&) {

@@ -7,14 +7,23 @@
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIO.h>
+#include <OpenEXR/ImfMultiPartOutputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfOutputPart.h>
+#include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfTiledOutputFile.h>
+#include <OpenEXR/ImfTiledOutputPart.h>
 
+#include <algorithm>
 #include <cstring>
 #include <exception>
 #include <new>
+#include <stdexcept>
 
 namespace gicodec::tools {
 namespace {
+
+using Imath::V2i;
 
 class MemoryFile final : public Imf::OStream {
  public:
@@ -86,39 +95,171 @@ void require_zero_alpha(const DumpInfo& info, std::span<const std::byte> texels,
 
 }  // namespace
 
-std::vector<std::byte> to_exr(const DumpInfo& info, std::span<const std::byte> texels,
-                              const std::string& path_for_messages) {
-  const std::string& path = path_for_messages;
-  check_texels(info, texels, path);
-  try {
-    const Extent size = image_extent(info.desc);
-    Imf::Header header(static_cast<int>(size.width), static_cast<int>(size.height));
-    set_attributes(header, info.attributes, path);
-    if (!keeps_every_bit(header.compression())) header.compression() = Imf::ZIP_COMPRESSION;
+namespace {
 
-    Imf::FrameBuffer source;
-    std::vector<std::vector<char>> planes;
-    const Record& record = info.desc.record;
+/// A part of a file: its header, and its images level by level.
+struct Part {
+  Imf::Header header;
+  std::span<const Dump> images;
+  bool tiled = false;
+};
+
+V2i v2i_of(const Attributes& attributes, const char* name, V2i otherwise) {
+  const Attribute* const found = find_attribute(attributes, name);
+  if (found == nullptr) return otherwise;
+  const auto values = find_floats(attributes, name, 2);
+  if (!values) throw std::invalid_argument(fmt::format("attribute {} is no pair of numbers", name));
+  return {static_cast<int>((*values)[0]), static_cast<int>((*values)[1])};
+}
+
+bool is_linear(const Attributes& attributes, const std::string& channel) {
+  const Attribute* const lines = find_attribute(attributes, kExrLinear);
+  return lines != nullptr &&
+         ("\n" + lines->value + "\n").find("\n" + channel + "\n") != std::string::npos;
+}
+
+Part part_of(std::span<const Dump> images, const std::string& path) {
+  const DumpInfo& first = images.front().info;
+  const Extent size = image_extent(first.desc);
+  const V2i sampling = v2i_of(first.attributes, kExrSampling, {1, 1});
+  const V2i origin = v2i_of(first.attributes, kExrOrigin, {0, 0});
+  Part part{Imf::Header(static_cast<int>(size.width) * sampling.x,
+                        static_cast<int>(size.height) * sampling.y),
+            images};
+  part.header.dataWindow().min += origin;
+  part.header.dataWindow().max += origin;
+  set_attributes(part.header, first.attributes, path);
+  part.tiled = part.header.hasTileDescription();
+  if (!keeps_every_bit(part.header.compression())) {
+    part.header.compression() = Imf::ZIP_COMPRESSION;
+  }
+  for (const Dump& image : images) {
+    if (image.info.place.level > 0) continue;
+    const Record& record = image.info.desc.record;
+    const V2i steps = v2i_of(image.info.attributes, kExrSampling, {1, 1});
     for (std::size_t i = 0; i < record.count; ++i) {
-      const Component& component = record.components[i];
-      const SampleType type = info.channels.types[i];
-      if (!has_channel(info.channels, component)) {
-        if (letter(component) == 'A') require_zero_alpha(info, texels, component, path);
+      if (!has_channel(image.info.channels, record.components[i])) {
+        if (letter(record.components[i]) == 'A') {
+          require_zero_alpha(image.info, image.texels, record.components[i], path);
+        }
         continue;
       }
-      const std::string name = channel_name(info.channels, info.desc.record.format, i);
-      const std::size_t sample_bytes = type == SampleType::half ? 2 : 4;
-      header.channels().insert(name, Imf::Channel(pixel_type(type)));
-      planes.push_back(channel_samples(info, texels, i));
-      source.insert(name, Imf::Slice(pixel_type(type), planes.back().data(), sample_bytes,
-                                     sample_bytes * size.width));
+      const std::string name = channel_name(image.info.channels, record.format, i);
+      part.header.channels().insert(name_of_text(name),
+                                    Imf::Channel(pixel_type(image.info.channels.types[i]), steps.x,
+                                                 steps.y, is_linear(first.attributes, name)));
     }
+  }
+  return part;
+}
+
+/// The samples of a level's images, and where they are.
+Imf::FrameBuffer frame_buffer(const Part& part, std::uint32_t level, const Imath::Box2i& window,
+                              std::vector<std::vector<char>>& planes) {
+  Imf::FrameBuffer source;
+  for (const Dump& image : part.images) {
+    const DumpInfo& info = image.info;
+    if (info.place.level != level) continue;
+    const Record& record = info.desc.record;
+    const std::size_t width = image_extent(info.desc).width;
+    const V2i steps = v2i_of(info.attributes, kExrSampling, {1, 1});
+    for (std::size_t i = 0; i < record.count; ++i) {
+      if (!has_channel(info.channels, record.components[i])) continue;
+      const SampleType type = info.channels.types[i];
+      const std::size_t bytes = type == SampleType::half ? 2 : 4;
+      planes.push_back(channel_samples(info, image.texels, i));
+      source.insert(name_of_text(channel_name(info.channels, record.format, i)),
+                    Imf::Slice::Make(pixel_type(type), planes.back().data(), window, bytes,
+                                     bytes * width, steps.x, steps.y));
+    }
+  }
+  return source;
+}
+
+/// `file`: an OutputFile or OutputPart.
+template <typename File>
+void write_lines(File& file, const Part& part) {
+  const Imath::Box2i window = part.header.dataWindow();
+  std::vector<std::vector<char>> planes;
+  file.setFrameBuffer(frame_buffer(part, 0, window, planes));
+  file.writePixels(window.max.y - window.min.y + 1);
+}
+
+/// `file`: a TiledOutputFile or TiledOutputPart.
+template <typename File>
+void write_tiles(File& file, const Part& part, const std::string& path) {
+  const int levels = part.header.tileDescription().mode == Imf::ONE_LEVEL ? 1 : file.numLevels();
+  std::size_t images = 0;
+  for (const Dump& image : part.images) images += image.info.place.level == 0;
+  if (part.images.size() != images * static_cast<std::size_t>(levels)) {
+    fail(Exit::bad_input, "{}: its tiles have {} levels, and there are {} images", path, levels,
+         part.images.size());
+  }
+  for (int level = 0; level < levels; ++level) {
+    std::vector<std::vector<char>> planes;
+    const Imath::Box2i window = file.dataWindowForLevel(level);
+    for (const Dump& image : part.images) {
+      const V2i steps = v2i_of(image.info.attributes, kExrSampling, {1, 1});
+      const Extent size = image_extent(image.info.desc);
+      if (static_cast<int>(image.info.place.level) != level || steps != V2i(1, 1)) continue;
+      const bool fits = static_cast<int>(size.width) == window.max.x - window.min.x + 1 &&
+                        static_cast<int>(size.height) == window.max.y - window.min.y + 1;
+      if (!fits) fail(Exit::bad_input, "{}: level {} has another size", path, level);
+    }
+    file.setFrameBuffer(frame_buffer(part, static_cast<std::uint32_t>(level), window, planes));
+    file.writeTiles(0, file.numXTiles(level) - 1, 0, file.numYTiles(level) - 1, level);
+  }
+}
+
+/// The parts, each of the images that follow one another with its number.
+std::vector<Part> parts_of(std::span<const Dump> images, const std::string& path) {
+  std::vector<Part> parts;
+  while (!images.empty()) {
+    const std::uint32_t number = images.front().info.place.part;
+    const auto end = std::ranges::find_if(
+        images, [&](const Dump& image) { return image.info.place.part != number; });
+    const auto count = static_cast<std::size_t>(end - images.begin());
+    parts.push_back(part_of(images.first(count), path));
+    images = images.subspan(count);
+  }
+  return parts;
+}
+
+void write_parts(MemoryFile& memory, std::vector<Part>& parts, const std::string& path) {
+  if (parts.size() == 1) {
+    if (parts[0].tiled) {
+      Imf::TiledOutputFile file(memory, parts[0].header, 0);
+      return write_tiles(file, parts[0], path);
+    }
+    Imf::OutputFile file(memory, parts[0].header, 0);
+    return write_lines(file, parts[0]);
+  }
+  std::vector<Imf::Header> headers;
+  for (Part& part : parts) {
+    part.header.setType(part.tiled ? Imf::TILEDIMAGE : Imf::SCANLINEIMAGE);
+    headers.push_back(part.header);
+  }
+  Imf::MultiPartOutputFile file(memory, headers.data(), static_cast<int>(headers.size()), false, 0);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (parts[i].tiled) {
+      Imf::TiledOutputPart tiles(file, static_cast<int>(i));
+      write_tiles(tiles, parts[i], path);
+    } else {
+      Imf::OutputPart lines(file, static_cast<int>(i));
+      write_lines(lines, parts[i]);
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<std::byte> to_exr(std::span<const Dump> images, const std::string& path_for_messages) {
+  const std::string& path = path_for_messages;
+  for (const Dump& image : images) check_texels(image.info, image.texels, path);
+  try {
+    std::vector<Part> parts = parts_of(images, path);
     MemoryFile memory(path.c_str());
-    {
-      Imf::OutputFile file(memory, header, 0);
-      file.setFrameBuffer(source);
-      file.writePixels(static_cast<int>(size.height));
-    }
+    write_parts(memory, parts, path);
     return memory.take();
   } catch (const Error&) {
     throw;

@@ -65,10 +65,23 @@ Stored stored_type(const ImageHead& head, const std::string& path) {
 
 std::vector<FoundChannel> channels_of(const ImageHead& head, SampleType type) {
   std::vector<FoundChannel> found;
-  // A grey image's channel is the first component.
+  // Channels of grey images are the first components.
   if (head.channels.size() == 1) return {{"R", type}};
+  if (head.channels.size() == 2) return {{"R", type}, {"G", type}};
   for (const std::string& name : head.channels) found.push_back({name, type});
   return found;
+}
+
+/// The format of integer samples that nothing describes; 16 bits may be 10-bit codes at first.
+std::optional<Format> format_of(const ImageHead& head, const Stored& stored, const Hints& hints) {
+  constexpr std::array<Format, 4> kBytes = {Format::R8_UNORM, Format::R8G8_UNORM,
+                                            Format::R8G8B8_UNORM, Format::R8G8B8A8_UNORM};
+  constexpr std::array<Format, 4> kShorts = {Format::R16_UNORM, Format::R16G16_UNORM,
+                                             Format::R16G16B16_UNORM, Format::R16G16B16A16_UNORM};
+  const std::size_t channels = head.channels.size();
+  if (hints.format || hints.desc || !hints.channels.empty() || !stored.scaled) return hints.format;
+  if (stored.bytes == 1) return kBytes[channels - 1];
+  return channels > 2 && !hints.plain ? std::nullopt : std::optional(kShorts[channels - 1]);
 }
 
 /// The module's parser for a kind. Only the parser of the file's extension reads a file.
@@ -109,6 +122,9 @@ struct DpxSizes {
 };
 
 constexpr std::uint32_t kUndefined = UINT32_MAX;
+
+/// No lossless compression makes an image smaller by more.
+constexpr std::uint64_t kRatio = 2000;
 
 /// Hint for a file that its extension's parser refuses.
 constexpr const char* kRename =
@@ -151,7 +167,8 @@ void require_complete_dpx(const ImageHead& image, const DpxSizes& sizes, const s
 
 }  // namespace
 
-Dump read_image(const std::string& path, ImageKind kind, const Hints& hints, bool texels) {
+std::vector<Dump> read_image(const std::string& path, ImageKind kind, const Hints& hints,
+                             bool texels) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) fail(Exit::io, "{}: cannot be opened", path);
   std::string why;
@@ -164,7 +181,7 @@ Dump read_image(const std::string& path, ImageKind kind, const Hints& hints, boo
   const ImageHead& head = image->head;
   require_plain(head, kind, path);
   if (dpx) require_complete_dpx(head, *dpx, path);
-  check_image_bytes(head.bytes, path);
+  check_image_bytes(head.bytes, kRatio, path);
   const Stored stored = stored_type(head, path);
 
   Dump dump;
@@ -173,7 +190,23 @@ Dump read_image(const std::string& path, ImageKind kind, const Hints& hints, boo
   FoundImage image_found;
   image_found.texels = {width, static_cast<std::uint32_t>(head.height), 1};
   image_found.channels = found;
-  resolve(dump.info, image_found, hints, path);
+  Hints own = hints;
+  own.format = format_of(head, stored, hints);
+  const auto others = resolve(dump.info, image_found, own, path);
+  if (!others.empty() && hints.channels.empty()) {
+    fail(Exit::bad_input,
+         "{}: channel {} does not belong to {}; --channels R=NAME,... picks those to keep, and "
+         "without --vk-format all are kept",
+         path, others.front().name, find_format(dump.info.desc.record.format)->name);
+  }
+  for (const FoundChannel& channel : others) dump.info.lost.push_back("channel " + channel.name);
+  const auto lose_others = [&](int count, const char* what) {
+    if (count > 1) dump.info.lost.push_back(fmt::format("{} more of its {}", count - 1, what));
+  };
+  lose_others(head.pages, "pages");
+  lose_others(head.levels, "mip levels");
+  dump.info.lost.push_back(
+      fmt::format("its metadata, and that it is {} (EXR comes back)", parser_of(kind)));
   const FormatInfo& format = *find_format(dump.info.desc.record.format);
   if (!dump.info.channels.exponent) {
     fail(Exit::bad_input, "{}: only EXR files can hold values that share an exponent", path);
@@ -189,7 +222,7 @@ Dump read_image(const std::string& path, ImageKind kind, const Hints& hints, boo
            path, 8 * stored.bytes, component.bits, format.name);
     }
   }
-  if (!texels) return dump;
+  if (!texels) return {std::move(dump)};
 
   const std::size_t channels = found.size();
   const std::size_t count = std::size_t{width} * static_cast<std::size_t>(head.height);
@@ -216,7 +249,7 @@ Dump read_image(const std::string& path, ImageKind kind, const Hints& hints, boo
       store_component(&dump.texels[i * format.record.bytes], format.record.bytes, component, *code);
     }
   }
-  return dump;
+  return {std::move(dump)};
 }
 
 void check_png_size(const std::string& path, std::uint64_t width, std::uint64_t height) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "dump/dump.h"
+#include "dump/exr_header.h"
 
 #include <OpenEXR/ImfForward.h>
 
@@ -34,9 +35,13 @@ struct FoundImage {
   std::uint64_t bytes = 0;       ///< of all texels of a texture file, if known
 };
 
-/// Determines format, grid, block, tiling and channels of an image. Sets info.desc, info.channels
-/// and, where a hint replaces them, info.attributes.
-void resolve(DumpInfo& info, const FoundImage& found, const Hints& hints, const std::string& path);
+/// Formats of 1 to 4 channels of a type that keep every value.
+[[nodiscard]] std::array<Format, 4> floats_of(SampleType type) noexcept;
+
+/// Determines format, grid, block, tiling and channels of an image: info.desc and info.channels.
+/// Returns the channels that are not the texture's.
+std::vector<FoundChannel> resolve(DumpInfo& info, const FoundImage& found, const Hints& hints,
+                                  const std::string& path);
 
 [[nodiscard]] std::string to_hex(std::string_view bytes);
 /// False unless the text is pairs of hexadecimal digits.
@@ -47,28 +52,34 @@ void resolve(DumpInfo& info, const FoundImage& found, const Hints& hints, const 
                               std::uint32_t sample, std::uint32_t x, std::uint32_t y,
                               const std::string& path);
 
-/// Throws for an image beyond 64 MiB that is more than 2,000 times as large as its file. No
-/// lossless compression reaches that, and the header's sizes determine allocations.
-void check_image_bytes(std::uint64_t bytes, const std::string& path);
+/// Throws for an image beyond 64 MiB that is more than `ratio` times as large as its file, which no
+/// compression reaches: the header's sizes determine allocations.
+void check_image_bytes(std::uint64_t bytes, std::uint64_t ratio, const std::string& path);
 
-/// Checks an EXR header without allocating by its sizes. Throws unless it is a small single-part
-/// scanline image whose sizes agree with the file's.
-void check_exr_header(const std::string& path);
+// Attributes of these names are facts of an EXR part that are no attributes there.
+inline constexpr const char* kExrOrigin = "exr:origin";      ///< of the data window, unless (0, 0)
+inline constexpr const char* kExrLinear = "exr:pLinear";     ///< channels with that flag, by lines
+inline constexpr const char* kExrSampling = "exr:sampling";  ///< of an image's channels, if not 1
+/// A name that the container can hold: itself, or 0x and its bytes where it is no UTF-8.
+[[nodiscard]] std::string text_of_name(std::string_view name);
+/// The inverse.
+[[nodiscard]] std::string name_of_text(const std::string& text);
 
-/// Sets info.attributes and info.dropped.
-void read_attributes(const Imf::Header& header, DumpInfo& info);
+/// Sets the attributes of a part's first image, and what of them is lost. `several`: the file has
+/// more parts.
+void read_attributes(const ExrPart& part, bool several, DumpInfo& info);
 /// The inverse; throws for a malformed attribute.
 void set_attributes(Imf::Header& header, const Attributes& attributes, const std::string& path);
 
-[[nodiscard]] Dump read_exr(const std::string& path, const Hints& hints, bool texels);
+// Readers of all images of a file, or of the one that `hints` name; with or without texels.
+[[nodiscard]] std::vector<Dump> read_exr(const std::string& path, const Hints& hints, bool texels);
 /// Reads DDS, KTX2 and raw files.
-[[nodiscard]] Dump read_texture_file(const std::string& path, ImageKind kind, const Hints& hints,
-                                     bool texels);
-void write_texture_file(const std::string& path, ImageKind kind, const DumpInfo& info,
-                        std::span<const std::byte> texels, Existing existing);
+[[nodiscard]] std::vector<Dump> read_texture_file(const std::string& path, ImageKind kind,
+                                                  const Hints& hints, bool texels);
+[[nodiscard]] std::vector<Dump> read_image(const std::string& path, ImageKind kind,
+                                           const Hints& hints, bool texels);
+void write_texture_file(const std::string& path, ImageKind kind, std::span<const Dump> images,
+                        Existing existing);
 /// Throws unless the texture is valid and `texels` has its size.
 void check_texels(const DumpInfo& info, std::span<const std::byte> texels, const std::string& path);
-[[nodiscard]] Dump read_image(const std::string& path, ImageKind kind, const Hints& hints,
-                              bool texels);
-
 }  // namespace gicodec::tools

@@ -1,12 +1,15 @@
 // KTX2 files (Khronos, "KTX File Format Specification, Version 2").
 #include "dump/error.h"
+#include "dump/internal.h"
 #include "dump/ktx2_format.h"
+#include "dump/ktx2_keys.h"
 #include "dump/texture_file.h"
 
 #include <gicodec/container.h>
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <numeric>
 
 namespace gicodec::tools {
@@ -14,12 +17,12 @@ namespace {
 
 constexpr std::array<unsigned char, 12> kIdentifier = {0xAB, 'K',  'T',  'X',  ' ',  '2',
                                                        '0',  0xBB, '\r', '\n', 0x1A, '\n'};
-/// The head: fields, then offsets of the file's parts, then the first level's.
-constexpr std::size_t kFixedBytes = 48, kHeadBytes = 104;
+/// The head: fields, offsets of the file's parts, then three numbers for each level.
+constexpr std::size_t kFixedBytes = 48, kIndexBytes = 80, kLevelBytes = 24;
 constexpr std::size_t kVkFormat = 12, kTypeSize = 16, kWidth = 20, kHeight = 24, kDepth = 28,
                       kLayers = 32, kFaces = 36, kLevels = 40, kScheme = 44, kDfdOffset = 48,
-                      kDfdBytes = 52, kKvdOffset = 56, kKvdBytes = 60, kSgdBytes = 72,
-                      kLevelOffset = 80, kLevelBytes = 88, kUnpackedBytes = 96;
+                      kDfdBytes = 52, kKvdOffset = 56, kKvdBytes = 60, kSgdBytes = 72;
+constexpr std::uint32_t kUastc = 166;  ///< a colour model
 
 std::uint64_t long_at(std::span<const std::byte> bytes, std::size_t offset) {
   return word_at(bytes, offset) | std::uint64_t{word_at(bytes, offset + 4)} << 32;
@@ -28,44 +31,49 @@ void set_long(std::span<std::byte> bytes, std::size_t offset, std::uint64_t valu
   set_word(bytes, offset, static_cast<std::uint32_t>(value));
   set_word(bytes, offset + 4, static_cast<std::uint32_t>(value >> 32));
 }
-constexpr std::size_t padded(std::size_t bytes) { return (bytes + 3) / 4 * 4; }
 
 bool is_ktx2(std::span<const std::byte> fixed) {
   return std::memcmp(fixed.data(), kIdentifier.data(), kIdentifier.size()) == 0;
 }
 
-std::string scheme_name(std::uint32_t scheme) {
-  constexpr std::array<const char*, 4> kSchemes = {"none", "BasisLZ", "Zstandard", "ZLIB"};
-  return scheme < kSchemes.size() ? kSchemes[scheme] : fmt::format("scheme {}", scheme);
+[[noreturn]] void fail_basis(const std::string& path, std::string_view what) {
+  fail(Exit::bad_input,
+       "{}: holds {}, which is made for transcoding; make BC7, ASTC or RGBA of it first, as "
+       "KTX-Software's \"ktx transcode\" does",
+       path, what);
 }
 
 /// `fixed`: the first kFixedBytes bytes of a file.
 TextureHead parse(std::span<const std::byte> fixed, const std::string& path) {
-  if (const std::uint32_t scheme = word_at(fixed, kScheme); scheme != 0) {
+  TextureHead head;
+  const std::uint32_t scheme = word_at(fixed, kScheme);
+  if (scheme == static_cast<std::uint32_t>(Scheme::basis_lz)) fail_basis(path, "BasisLZ");
+  if (scheme > static_cast<std::uint32_t>(Scheme::zlib)) {
     fail(Exit::bad_input,
-         "{}: is supercompressed ({}); write it without, since a container compresses it", path,
-         scheme_name(scheme));
+         "{}: is supercompressed by scheme {}, which is unknown; write it without, since a "
+         "container compresses it",
+         path, scheme);
   }
-  if (const std::uint32_t levels = word_at(fixed, kLevels); levels > 1) {
-    fail(Exit::bad_input,
-         "{}: has {} mipmaps; write it with one level, as ktx create --levels 1 does", path,
-         levels);
-  }
-  const std::uint32_t faces = word_at(fixed, kFaces), depth = word_at(fixed, kDepth),
-                      layers = word_at(fixed, kLayers);
-  if (faces == 6) {
-    fail(Exit::bad_input, "{}: is a cube map; write its faces as a texture array", path);
-  }
+  head.scheme = static_cast<Scheme>(scheme);
+  const std::uint32_t depth = word_at(fixed, kDepth), layers = word_at(fixed, kLayers);
   if (depth > 0 && layers > 0) {
     fail(Exit::bad_input, "{}: is an array of 3D textures; write a file for each", path);
   }
-  TextureHead head;
   head.volume = depth > 0;
   head.texels = {word_at(fixed, kWidth), std::max(1U, word_at(fixed, kHeight)),
                  std::max({1U, depth, layers})};
-  if (head.texels.x == 0 || faces != 1) {
-    fail(Exit::bad_input, "{}: its KTX2 header is damaged", path);
+  head.levels = std::max(1U, word_at(fixed, kLevels));
+  head.faces = word_at(fixed, kFaces);
+  const std::uint32_t side =
+      std::max({head.texels.x, head.texels.y, head.volume ? head.texels.z : 1U});
+  std::string fault;
+  if (head.texels.x == 0) fault = "a width of 0";
+  if (head.faces != 1 && (head.faces != 6 || head.volume))
+    fault = fmt::format("{} faces", head.faces);
+  if (head.levels > static_cast<unsigned>(std::bit_width(side))) {
+    fault = fmt::format("{} levels of {} texels", head.levels, to_string(head.texels));
   }
+  if (!fault.empty()) fail(Exit::bad_input, "{}: its KTX2 header is damaged: {}", path, fault);
   const std::uint32_t number = word_at(fixed, kVkFormat);
   head.format_name = fmt::format("VkFormat {}", number);
   if (number != 0 && find_format(static_cast<Format>(number)) != nullptr) {
@@ -74,94 +82,126 @@ TextureHead parse(std::span<const std::byte> fixed, const std::string& path) {
   return head;
 }
 
-/// Reads a key, NUL, and a value, which is text if its only NUL is its last byte.
-Attribute read_entry(std::span<const std::byte> entry, const std::string& path) {
-  const std::string_view text(reinterpret_cast<const char*>(entry.data()), entry.size());
-  const std::size_t end = text.find('\0');
-  const std::string key(text.substr(0, end));
-  if (end == std::string_view::npos || key.empty() || !is_utf8(key) || is_head_field(key)) {
-    fail(Exit::bad_input, "{}: its key {} cannot be kept", path, key);
-  }
-  const std::string_view value = text.substr(end + 1);
-  const bool is_text = value.find('\0') + 1 == value.size() && !value.empty() && is_utf8(value) &&
-                       !value.starts_with("0x");
-  if (is_text) return text_attribute(key, value.substr(0, value.size() - 1));
-  return bytes_attribute(key, entry.subspan(end + 1));
+/// The place of a level's three numbers.
+constexpr std::size_t level_at(std::uint32_t level) { return kIndexBytes + kLevelBytes * level; }
+
+void set_level(std::span<std::byte> head, std::uint32_t level, const StoredLevel& stored) {
+  set_long(head, level_at(level), stored.offset);
+  set_long(head, level_at(level) + 8, stored.bytes);
+  set_long(head, level_at(level) + 16, stored.unpacked);
 }
 
-Attributes read_entries(std::span<const std::byte> bytes, const std::string& path) {
-  Attributes attributes;
-  while (!bytes.empty()) {
-    if (bytes.size() < 4 || word_at(bytes, 0) > bytes.size() - 4) {
-      fail(Exit::bad_input, "{}: its keys and values are damaged", path);
-    }
-    const std::size_t size = word_at(bytes, 0);
-    if (attributes.size() == kMaxAttributes) {
-      fail(Exit::bad_input, "{}: has more than {} keys", path, kMaxAttributes);
-    }
-    attributes.push_back(read_entry(bytes.subspan(4, size), path));
-    bytes = bytes.subspan(std::min(bytes.size(), padded(4 + size)));
-  }
-  std::ranges::sort(attributes, {}, &Attribute::name);
-  const auto twice = std::ranges::adjacent_find(attributes, {}, &Attribute::name);
-  if (twice != attributes.end()) {
-    fail(Exit::bad_input, "{}: has key {} twice", path, twice->name);
-  }
-  return attributes;
+/// Bytes between the starts of levels, which are multiples of it.
+std::uint64_t alignment_of(Scheme scheme, const Record& record) {
+  // The analyzer also considers invalid textures, with 0 bytes.
+  const std::uint64_t texel = std::max<std::uint64_t>(1, record.bytes);
+  return scheme == Scheme::none ? std::lcm<std::uint64_t>(texel, 4) : 1;
 }
 
-std::vector<std::byte> write_entries(const Attributes& attributes, const std::string& path) {
-  std::vector<std::byte> all;
-  for (const Attribute& attribute : attributes) {
-    if (is_head_field(attribute.name)) continue;
-    std::vector<std::byte> value;
-    if (attribute.value.starts_with("0x")) {
-      value = attribute_bytes(attribute, path);
-    } else {
-      const auto text = std::as_bytes(std::span(attribute.value));
-      value.assign(text.begin(), text.end());
-      value.push_back(std::byte{0});
-    }
-    const auto key = std::as_bytes(std::span(attribute.name));
-    if (attribute.name.empty() || attribute.name.find('\0') != std::string::npos) {
-      fail(Exit::bad_input, "{}: attribute {} cannot be written as a key of KTX2", path,
-           attribute.name);
-    }
-    const std::size_t size = key.size() + 1 + value.size();
-    if (size > kMaxHeadBytes || all.size() > kMaxHeadBytes) {
-      fail(Exit::bad_input, "{}: its attributes take more than {} bytes", path, kMaxHeadBytes);
-    }
-    const std::size_t at = all.size();
-    all.resize(at + padded(4 + size));
-    set_word(all, at, static_cast<std::uint32_t>(size));
-    std::ranges::copy(key, all.begin() + static_cast<std::ptrdiff_t>(at + 4));
-    std::ranges::copy(value, all.begin() + static_cast<std::ptrdiff_t>(at + 5 + key.size()));
+/// Sets the levels' places behind `begin`, smallest first, in a head too.
+void place_levels(std::vector<StoredLevel>& levels, std::uint64_t begin, std::uint64_t alignment,
+                  std::span<std::byte> head) {
+  for (auto level = static_cast<std::uint32_t>(levels.size()); level-- > 0;) {
+    levels[level].offset = (begin + alignment - 1) / alignment * alignment;
+    set_level(head, level, levels[level]);
+    begin = levels[level].offset + levels[level].bytes;
   }
-  return all;
 }
 
-/// The default first kFixedBytes bytes of a texture's file.
-std::vector<std::byte> implied_header(const TextureDesc& desc) {
-  const Grid texels = texels_of(desc);
-  const bool volume = is_volume(desc);
-  std::vector<std::byte> fixed(kFixedBytes);
-  std::memcpy(fixed.data(), kIdentifier.data(), kIdentifier.size());
-  set_word(fixed, kVkFormat, static_cast<std::uint32_t>(desc.record.format));
-  set_word(fixed, kTypeSize, ktx2_type_size(desc.record));
-  set_word(fixed, kWidth, texels.x);
-  set_word(fixed, kHeight, texels.y);
-  set_word(fixed, kDepth, volume ? texels.z : 0);
-  set_word(fixed, kLayers, volume || texels.z == 1 ? 0 : texels.z);
-  set_word(fixed, kFaces, 1);
-  set_word(fixed, kLevels, 1);
-  return fixed;
+/// A head with levels of these sizes, which stand behind it, smallest first; sets their offsets.
+std::vector<std::byte> implied_head(const TextureHead& head, const DumpInfo& first,
+                                    std::vector<StoredLevel>& levels, const std::string& path) {
+  const Record& record = first.desc.record;
+  const auto descriptor = ktx2_descriptor(record);
+  const auto entries = write_ktx2_keys(first.attributes, path);
+  const std::size_t dfd_offset = level_at(head.levels), kvd_offset = dfd_offset + descriptor.size();
+  std::vector<std::byte> bytes(kvd_offset + entries.size());
+  const auto set = [&](std::size_t at, std::size_t value) {
+    set_word(bytes, at, static_cast<std::uint32_t>(value));
+  };
+  std::memcpy(bytes.data(), kIdentifier.data(), kIdentifier.size());
+  set(kVkFormat, static_cast<std::uint32_t>(record.format));
+  set(kTypeSize, ktx2_type_size(record));
+  set(kWidth, head.texels.x);
+  set(kHeight, head.texels.y);
+  set(kDepth, head.volume ? head.texels.z : 0);
+  set(kLayers, head.volume || head.texels.z == 1 ? 0 : head.texels.z);
+  set(kFaces, head.faces);
+  set(kLevels, head.levels);
+  set(kScheme, static_cast<std::size_t>(head.scheme));
+  set(kDfdOffset, dfd_offset);
+  set(kDfdBytes, descriptor.size());
+  set(kKvdOffset, entries.empty() ? 0 : kvd_offset);
+  set(kKvdBytes, entries.size());
+  std::ranges::copy(descriptor, bytes.begin() + static_cast<std::ptrdiff_t>(dfd_offset));
+  std::ranges::copy(entries, bytes.begin() + static_cast<std::ptrdiff_t>(kvd_offset));
+  place_levels(levels, bytes.size(), alignment_of(head.scheme, record), bytes);
+  bytes.resize(static_cast<std::size_t>(levels[head.levels - 1].offset));
+  return bytes;
 }
 
-/// The bytes of attribute `name`, or else `implied`.
-std::vector<std::byte> kept(const DumpInfo& info, const char* name, std::vector<std::byte> implied,
-                            const std::string& path) {
-  const Attribute* attribute = find_attribute(info.attributes, name);
-  return attribute == nullptr ? std::move(implied) : attribute_bytes(*attribute, path);
+std::vector<StoredLevel> stored_levels(std::span<const std::byte> head, std::uint32_t count) {
+  std::vector<StoredLevel> levels;
+  for (std::uint32_t level = 0; level < count; ++level) {
+    const std::size_t at = level_at(level);
+    levels.push_back({long_at(head, at), long_at(head, at + 8), long_at(head, at + 16)});
+  }
+  return levels;
+}
+
+/// The levels by their places in the file. Throws unless they stand behind one another.
+std::vector<std::uint32_t> by_offset(std::span<const StoredLevel> levels, std::uint64_t first,
+                                     const std::string& path) {
+  std::vector<std::uint32_t> order(levels.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::ranges::sort(order, {}, [&](std::uint32_t level) { return levels[level].offset; });
+  std::uint64_t end = first;
+  for (const std::uint32_t level : order) {
+    if (levels[level].offset < end) {
+      fail(Exit::bad_input,
+           "{}: its KTX2 header is damaged: level {} begins within what is before it", path, level);
+    }
+    end = levels[level].offset + levels[level].bytes;
+  }
+  return order;
+}
+
+/// All bytes of a file but those of its levels.
+std::vector<std::byte> bytes_around(TextureFile& file, const TextureHead& head) {
+  std::vector<std::byte> rest;
+  std::uint64_t at = 0;
+  const auto take = [&](std::uint64_t end) {
+    if (end - at > kMaxHeadBytes || rest.size() > kMaxHeadBytes) {
+      fail(Exit::bad_input, "{}: has more than {} bytes that are no texels", file.path(),
+           kMaxHeadBytes);
+    }
+    const auto part = file.read(at, static_cast<std::size_t>(end - at));
+    rest.insert(rest.end(), part.begin(), part.end());
+  };
+  for (const std::uint32_t level : by_offset(head.stored, level_at(head.levels), file.path())) {
+    take(head.stored[level].offset);
+    at = head.stored[level].offset + head.stored[level].bytes;
+  }
+  take(file.size());
+  return rest;
+}
+
+/// A head with offsets and sizes of levels set to 0: they differ when it is packed anew.
+std::vector<std::byte> without_index(std::vector<std::byte> head, std::uint32_t levels) {
+  for (std::uint32_t level = 0; level < levels; ++level) set_level(head, level, {});
+  return head;
+}
+
+/// A level of all faces.
+std::vector<std::byte> level_of(std::span<const Dump> images, const TextureHead& head,
+                                std::uint32_t level) {
+  const Format format = images.front().info.desc.record.format;
+  std::vector<std::byte> bytes(static_cast<std::size_t>(level_bytes(head, level, format)));
+  for (const Dump& image : images) {
+    if (image.info.place.level != level) continue;
+    scatter(image.texels, runs_by_level(head, image.info.place, format), bytes);
+  }
+  return bytes;
 }
 
 }  // namespace
@@ -171,65 +211,160 @@ TextureHead read_ktx2_head(TextureFile& file) {
   if (file.size() < kIdentifier.size() || !is_ktx2(file.read(0, kIdentifier.size()))) {
     fail(Exit::bad_input, "{}: is not a KTX2 file", path);
   }
-  const auto start = file.read(0, kHeadBytes);
-  const std::span fixed = std::span(start).first(kFixedBytes);
-  TextureHead head = parse(fixed, path);
+  const auto start = file.read(0, kIndexBytes);
+  TextureHead head = parse(std::span(start).first(kFixedBytes), path);
+  const auto index = file.read(0, level_at(head.levels));
+  head.stored = stored_levels(index, head.levels);
   const std::uint64_t dfd = word_at(start, kDfdBytes), kvd = word_at(start, kKvdBytes);
-  if (dfd < 4 || dfd > kMaxHeadBytes || kvd > kMaxHeadBytes || long_at(start, kSgdBytes) != 0) {
-    fail(Exit::bad_input, "{}: its KTX2 header is damaged", path);
+  std::string fault;
+  if (dfd < 4 || dfd > kMaxHeadBytes) fault = fmt::format("a format descriptor of {} bytes", dfd);
+  if (kvd > kMaxHeadBytes) fault = fmt::format("keys and values of {} bytes", kvd);
+  if (long_at(start, kSgdBytes) != 0)
+    fault = "global data of supercompression, which only BasisLZ has";
+  for (const StoredLevel& level : head.stored) {
+    if (level.bytes > file.size() || level.unpacked > kMaxImageBytes) {
+      fault = fmt::format("a level of {} bytes, {} unpacked", level.bytes, level.unpacked);
+    }
+    if (head.scheme == Scheme::none && level.unpacked != level.bytes) {
+      fault = fmt::format("a level of {} bytes, {} unpacked, and no supercompression", level.bytes,
+                          level.unpacked);
+    }
   }
+  if (!fault.empty()) fail(Exit::bad_input, "{}: its KTX2 header is damaged: {}", path, fault);
   const auto descriptor = file.read(word_at(start, kDfdOffset), static_cast<std::size_t>(dfd));
   if (word_at(descriptor, 0) != dfd) {
-    fail(Exit::bad_input, "{}: its data format descriptor is damaged", path);
+    fail(Exit::bad_input, "{}: its data format descriptor is damaged: it says {} bytes, not {}",
+         path, word_at(descriptor, 0), dfd);
   }
+  if (dfd > 12 && (word_at(descriptor, 12) & 0xFF) == kUastc) fail_basis(path, "UASTC");
   if (kvd > 0) {
     const auto entries = file.read(word_at(start, kKvdOffset), static_cast<std::size_t>(kvd));
-    head.attributes = read_entries(entries, path);
+    head.attributes = read_ktx2_keys(entries, path);
   }
-  head.offset = long_at(start, kLevelOffset);
-  head.bytes = long_at(start, kLevelBytes);
-  if (long_at(start, kUnpackedBytes) != head.bytes) {
-    fail(Exit::bad_input, "{}: its KTX2 header is damaged", path);
-  }
-  set_attribute(head.attributes, bytes_attribute(kKtx2Header, fixed));
-  set_attribute(head.attributes, bytes_attribute(kKtx2Format, descriptor));
+  head.offset = head.stored.front().offset;
+  head.bytes = head.stored.front().unpacked;
   return head;
 }
 
-void drop_implied_ktx2(DumpInfo& info) {
-  std::erase(info.attributes, bytes_attribute(kKtx2Header, implied_header(info.desc)));
-  std::erase(info.attributes, bytes_attribute(kKtx2Format, ktx2_descriptor(info.desc.record)));
+void keep_ktx2_head(TextureFile& file, const TextureHead& head, DumpInfo& first) {
+  if (head.scheme != Scheme::none) {
+    set_attribute(first.attributes, {kKtx2Scheme, "string", std::string(to_string(head.scheme))});
+  }
+  std::vector<StoredLevel> levels = head.stored;
+  auto around = bytes_around(file, head);
+  TextureHead own = head;
+  own.texels = texels_of(first.desc);
+  auto implied = implied_head(own, first, levels, file.path());
+  if (head.scheme == Scheme::none) {
+    std::uint64_t end = implied.size();
+    // What stands between implied levels is zeros that align them.
+    for (std::uint32_t level = head.levels; level-- > 0;) {
+      implied.resize(implied.size() + static_cast<std::size_t>(levels[level].offset - end));
+      end = levels[level].offset + levels[level].bytes;
+    }
+  } else {
+    const auto begin = std::ranges::min(head.stored, {}, &StoredLevel::offset).offset;
+    if (around.size() > begin) {
+      const auto rest = std::span(around).subspan(static_cast<std::size_t>(begin));
+      if (std::ranges::any_of(rest, [](std::byte byte) { return byte != std::byte{0}; })) {
+        first.lost.emplace_back("bytes between its levels or behind them");
+      }
+      around.resize(static_cast<std::size_t>(begin));
+    }
+    around = without_index(std::move(around), head.levels);
+    implied = without_index(std::move(implied), head.levels);
+  }
+  if (around != implied) set_attribute(first.attributes, bytes_attribute(kKtx2Head, around));
 }
 
-std::vector<std::byte> ktx2_head(const DumpInfo& info, const std::string& path) {
-  const auto fixed = kept(info, kKtx2Header, implied_header(info.desc), path);
-  if (fixed.size() != kFixedBytes || !is_ktx2(fixed) || !fits(parse(fixed, path), info.desc)) {
-    fail(Exit::bad_input, "{}: attribute {} is of another texture", path, kKtx2Header);
+namespace {
+
+/// How a file packs its levels: as it was packed, unless the attribute was taken away.
+Scheme scheme_of(const DumpInfo& first, const std::string& path) {
+  const Attribute* const attribute = find_attribute(first.attributes, kKtx2Scheme);
+  if (attribute == nullptr) return Scheme::none;
+  const auto known = scheme_from_string(attribute->value);
+  if (known && *known != Scheme::basis_lz) return *known;
+  fail(Exit::bad_input, "{}: attribute {} is damaged", path, kKtx2Scheme);
+}
+
+/// The kept bytes that are no texels, and how their levels were packed; empty: none are kept.
+struct KeptHead {
+  std::vector<std::byte> bytes;
+  TextureHead head;
+};
+
+KeptHead kept_head(std::span<const Dump> images, const std::string& path) {
+  const Attribute* const attribute = find_attribute(images.front().info.attributes, kKtx2Head);
+  if (attribute == nullptr) return {};
+  KeptHead kept{attribute_bytes(*attribute, path), {}};
+  if (kept.bytes.size() >= kIndexBytes && is_ktx2(kept.bytes)) {
+    kept.head = parse(std::span(kept.bytes).first(kFixedBytes), path);
   }
-  const auto descriptor = kept(info, kKtx2Format, ktx2_descriptor(info.desc.record), path);
-  if (descriptor.size() < 4 || word_at(descriptor, 0) != descriptor.size()) {
-    fail(Exit::bad_input, "{}: attribute {} is damaged", path, kKtx2Format);
+  if (kept.head.texels.x == 0 || kept.bytes.size() < level_at(kept.head.levels)) {
+    fail(Exit::bad_input, "{}: attribute {} is damaged", path, kKtx2Head);
   }
-  const auto entries = write_entries(info.attributes, path);
-  const std::size_t dfd_offset = kHeadBytes, kvd_offset = dfd_offset + descriptor.size();
-  // The analyzer also considers invalid textures, with 0 bytes.
-  const std::size_t texel = std::max<std::size_t>(1, info.desc.record.bytes);
-  const std::size_t alignment = std::lcm<std::size_t>(texel, 4);
-  const std::size_t end = kvd_offset + entries.size();
-  const std::size_t offset = (end + alignment - 1) / alignment * alignment;
-  const std::uint64_t bytes = texture_bytes(info.desc);
-  std::vector<std::byte> head(offset);
-  std::ranges::copy(fixed, head.begin());
-  set_word(head, kDfdOffset, static_cast<std::uint32_t>(dfd_offset));
-  set_word(head, kDfdBytes, static_cast<std::uint32_t>(descriptor.size()));
-  set_word(head, kKvdOffset, entries.empty() ? 0 : static_cast<std::uint32_t>(kvd_offset));
-  set_word(head, kKvdBytes, static_cast<std::uint32_t>(entries.size()));
-  set_long(head, kLevelOffset, offset);
-  set_long(head, kLevelBytes, bytes);
-  set_long(head, kUnpackedBytes, bytes);
-  std::ranges::copy(descriptor, head.begin() + kHeadBytes);
-  std::ranges::copy(entries, head.begin() + static_cast<std::ptrdiff_t>(kvd_offset));
-  return head;
+  require_fit(kept.head, images, kKtx2Head, path);
+  return kept;
+}
+
+/// The levels at the places that a kept head says. Throws if they have other sizes.
+std::vector<StoredLevel> levels_of(const KeptHead& kept, std::span<const StoredLevel> levels,
+                                   const std::string& path) {
+  const auto stored = stored_levels(kept.bytes, kept.head.levels);
+  if (!std::ranges::equal(stored, levels, {}, &StoredLevel::bytes, &StoredLevel::bytes)) {
+    fail(Exit::bad_input, "{}: attribute {} is of another texture", path, kKtx2Head);
+  }
+  return stored;
+}
+
+/// A file: levels at their places, `around` them in all other ones, and zeros where that has ended.
+std::vector<std::byte> assemble(std::span<const std::vector<std::byte>> data,
+                                std::span<const StoredLevel> levels,
+                                std::span<const std::byte> around, const std::string& path) {
+  std::vector<std::byte> file;
+  for (const std::uint32_t level :
+       by_offset(levels, level_at(static_cast<std::uint32_t>(levels.size())), path)) {
+    const std::size_t gap = static_cast<std::size_t>(levels[level].offset) - file.size();
+    constexpr std::size_t kMostZeros = 256;  // They align levels.
+    const std::size_t known = std::min(gap, around.size());
+    if (gap - known > kMostZeros) {
+      fail(Exit::bad_input, "{}: attribute {} is damaged", path, kKtx2Head);
+    }
+    file.insert(file.end(), around.begin(), around.begin() + static_cast<std::ptrdiff_t>(known));
+    file.resize(file.size() + gap - known);
+    around = around.subspan(known);
+    file.insert(file.end(), data[level].begin(), data[level].end());
+  }
+  file.insert(file.end(), around.begin(), around.end());
+  return file;
+}
+
+}  // namespace
+
+std::vector<std::byte> ktx2_file(std::span<const Dump> images, const std::string& path) {
+  const DumpInfo& first = images.front().info;
+  KeptHead kept = kept_head(images, path);
+  TextureHead head = kept.bytes.empty() ? head_of(images, path) : kept.head;
+  head.scheme = scheme_of(first, path);
+  std::vector<std::vector<std::byte>> data;
+  std::vector<StoredLevel> levels;
+  for (std::uint32_t level = 0; level < head.levels; ++level) {
+    data.push_back(level_of(images, head, level));
+    const std::uint64_t unpacked = data.back().size();
+    if (head.scheme != Scheme::none) data.back() = pack_level(head.scheme, data.back(), path);
+    levels.push_back({0, data.back().size(), unpacked});
+  }
+  if (kept.bytes.empty()) {
+    const auto around = implied_head(head, first, levels, path);
+    return assemble(data, levels, around, path);
+  }
+  if (head.scheme == Scheme::none && kept.head.scheme == Scheme::none) {
+    return assemble(data, levels_of(kept, levels, path), kept.bytes, path);
+  }
+  set_word(kept.bytes, kScheme, static_cast<std::uint32_t>(head.scheme));
+  place_levels(levels, kept.bytes.size(), alignment_of(head.scheme, first.desc.record), kept.bytes);
+  return assemble(data, levels, kept.bytes, path);
 }
 
 }  // namespace gicodec::tools

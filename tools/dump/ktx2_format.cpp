@@ -4,14 +4,17 @@
 #include "dump/sample.h"
 #include "dump/texture_file.h"
 
+#include <algorithm>
+#include <array>
 #include <string_view>
 
 namespace gicodec::tools {
 namespace {
 
-constexpr std::uint32_t kRgb = 1, kBc6h = 133, kBc7 = 134;  // colour models
+constexpr std::uint32_t kRgb = 1;  ///< a colour model
 constexpr std::uint32_t kBt709 = 1, kLinear = 1, kSrgb = 2;
-constexpr std::uint32_t kExponent = 0x20, kSigned = 0x40, kFloat = 0x80;
+constexpr std::uint32_t kIsLinear = 0x10, kExponent = 0x20, kSigned = 0x40, kFloat = 0x80;
+constexpr std::uint32_t kAlpha = 15;
 constexpr std::uint32_t kOne = 0x3F800000, kMinusOne = 0xBF800000;
 
 struct Sample {
@@ -21,7 +24,7 @@ struct Sample {
 
 /// Number of a channel in the colour model RGBSDA.
 std::uint32_t channel_of(char component) {
-  return component == 'A' ? 15
+  return component == 'A' ? kAlpha
                           : static_cast<std::uint32_t>(std::string_view("RGB").find(component));
 }
 
@@ -60,52 +63,94 @@ std::vector<Sample> shared_exponent_samples(const Record& record) {
   return samples;
 }
 
-std::vector<Sample> samples_of(const Record& record) {
-  const std::uint32_t bits = 8U * record.bytes;
-  switch (record.format) {
-    case Format::E5B9G9R9_UFLOAT_PACK32:
-      return shared_exponent_samples(record);
-    case Format::BC6H_UFLOAT_BLOCK:
-      return {{0, bits, kFloat, 0, kOne}};
-    case Format::BC6H_SFLOAT_BLOCK:
-      return {{0, bits, kFloat | kSigned, kMinusOne, kOne}};
-    case Format::BC7_UNORM_BLOCK:
-    case Format::BC7_SRGB_BLOCK:
-      return {{0, bits, 0, 0, UINT32_MAX}};
-    default:
-      break;
-  }
+/// What a family of compressed formats is made of: halves of a block, or all of it, with a channel
+/// each.
+struct Family {
+  std::string_view prefix;
+  std::uint32_t model;
+  std::array<std::int8_t, 2> channels;  ///< -1: there is no second one
+  bool side_by_side = true;             ///< false: both are in all bits
+};
+constexpr std::array<Family, 14> kFamilies{{{"BC1_RGB_", 128, {0, -1}},
+                                            {"BC1_RGBA_", 128, {1, -1}},
+                                            {"BC2_", 129, {15, 0}},
+                                            {"BC3_", 130, {15, 0}},
+                                            {"BC4_", 131, {0, -1}},
+                                            {"BC5_", 132, {0, 1}},
+                                            {"BC6H_", 133, {0, -1}},
+                                            {"BC7_", 134, {0, -1}},
+                                            {"ETC2_R8G8B8_", 161, {2, -1}},
+                                            {"ETC2_R8G8B8A1_", 161, {2, 15}, false},
+                                            {"ETC2_R8G8B8A8_", 161, {15, 2}},
+                                            {"EAC_R11_", 161, {0, -1}},
+                                            {"EAC_R11G11_", 161, {0, 1}},
+                                            {"ASTC_", 162, {0, -1}}}};
+
+bool has(Format format, std::string_view word) {
+  return find_format(format)->name.find(word) != std::string_view::npos;
+}
+
+const Family& family_of(Format format) {
+  return *std::ranges::find_if(kFamilies, [&](const Family& family) {
+    return find_format(format)->name.starts_with(family.prefix);
+  });
+}
+
+std::vector<Sample> compressed_samples(const Record& record) {
+  const Family& family = family_of(record.format);
+  const bool two = family.channels[1] >= 0, half = two && family.side_by_side;
+  const std::uint32_t bits = 8U * record.bytes / (half ? 2 : 1);
   std::vector<Sample> samples;
-  for (const Component& component : record.used()) samples.push_back(sample_of(component));
+  for (std::uint32_t i = 0; i < (two ? 2U : 1U); ++i) {
+    const auto channel = static_cast<std::uint32_t>(family.channels[i]);
+    const std::uint32_t linear = channel == kAlpha && has(record.format, "SRGB") ? kIsLinear : 0;
+    Sample sample{half ? i * bits : 0, bits, channel | linear, 0, UINT32_MAX};
+    if (has(record.format, "SNORM")) {
+      sample = {sample.offset, bits, channel | kSigned, 0x80000000, INT32_MAX};
+    } else if (has(record.format, "UFLOAT")) {
+      sample = {sample.offset, bits, channel | kFloat, 0, kOne};
+    } else if (has(record.format, "SFLOAT")) {
+      sample = {sample.offset, bits, channel | kFloat | kSigned, kMinusOne, kOne};
+    }
+    samples.push_back(sample);
+  }
+  return samples;
+}
+
+std::vector<Sample> samples_of(const Record& record) {
+  if (record.format == Format::E5B9G9R9_UFLOAT_PACK32) return shared_exponent_samples(record);
+  if (is_compressed(record.format)) return compressed_samples(record);
+  std::vector<Sample> samples;
+  for (const Component& component : record.used()) {
+    Sample sample = sample_of(component);
+    if (letter(component) == 'A' && has(record.format, "SRGB")) sample.channel |= kIsLinear;
+    samples.push_back(sample);
+  }
   // By first bit, which differs from component order in B8G8R8A8.
   std::ranges::sort(samples, {}, &Sample::offset);
   return samples;
 }
 
-bool is_packed(Format format) { return find_format(format)->name.ends_with("PACK32"); }
-
 }  // namespace
 
 std::uint32_t ktx2_type_size(const Record& record) noexcept {
-  if (texels_of_record(record.format) > 1) return 1;
-  return is_packed(record.format) ? 4 : record.bytes / record.count;
+  if (is_compressed(record.format)) return 1;
+  return has(record.format, "PACK32") ? 4 : record.bytes / record.count;
 }
 
 std::vector<std::byte> ktx2_descriptor(const Record& record) {
   constexpr std::size_t kStart = 28, kSampleBytes = 16;
   const auto samples = samples_of(record);
-  const bool blocks = texels_of_record(record.format) > 1;
-  const bool bc6h =
-      record.format == Format::BC6H_UFLOAT_BLOCK || record.format == Format::BC6H_SFLOAT_BLOCK;
-  const std::uint32_t model = !blocks ? kRgb : bc6h ? kBc6h : kBc7;
-  const std::uint32_t transfer = record.format == Format::BC7_SRGB_BLOCK ? kSrgb : kLinear;
+  const std::uint32_t model = is_compressed(record.format) ? family_of(record.format).model : kRgb;
+  const std::uint32_t transfer = has(record.format, "SRGB") ? kSrgb : kLinear;
+  const FormatInfo& format = *find_format(record.format);
   const std::size_t size = kStart + kSampleBytes * samples.size();
   std::vector<std::byte> bytes(size);
   const auto set = [&](std::size_t at, std::uint32_t value) { set_word(bytes, at, value); };
   set(0, static_cast<std::uint32_t>(size));
   set(8, 2 | static_cast<std::uint32_t>(size - 4) << 16);  // version, size of the block
   set(12, model | kBt709 << 8 | transfer << 16);
-  set(16, blocks ? 0x0303 : 0);  // texels of a block along x and y, less 1
+  set(16, (format.width - 1U) | (format.height - 1U) << 8);  // texels of a block, less 1
   set(20, record.bytes);
   std::size_t at = kStart;
   for (const Sample& sample : samples) {

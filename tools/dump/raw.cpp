@@ -170,7 +170,7 @@ TextureHead parse_sidecar(const std::string& text, const std::string& path) {
   return head;
 }
 
-TextureHead read_raw_head(TextureFile& file, const std::optional<TextureDesc>& known) {
+TextureHead read_raw_head(TextureFile& file, const Hints& hints) {
   const std::string own = raw_sidecar_path(file.path(), false),
                     shared = raw_sidecar_path(file.path(), true);
   std::error_code error;
@@ -178,11 +178,16 @@ TextureHead read_raw_head(TextureFile& file, const std::optional<TextureDesc>& k
              has_shared = std::filesystem::exists(shared, error);
   TextureHead head;
   if (!has_own && !has_shared) {
-    if (!known) {
-      fail(Exit::bad_input, "{}: has no sidecar {}, or {} for all frames, that describes it",
+    const bool described = hints.format && hints.extent;
+    if (!hints.desc && !described) {
+      fail(Exit::bad_input,
+           "{}: has no sidecar {}, or {} for all frames, that describes it; --vk-format and "
+           "--extent do without one",
            file.path(), own, shared);
     }
-    head.texels = texels_of(*known);
+    head.texels = hints.desc ? texels_of(*hints.desc) : *hints.extent;
+    head.volume = !hints.desc && head.texels.z > 1;
+    head.format_name = "none";
     head.attributes = {extent_attribute(head.texels), {kRawSidecar, "string", "none"}};
   } else {
     const std::string& path = has_own ? own : shared;
@@ -208,15 +213,15 @@ std::string raw_sidecar(const DumpInfo& info, const std::string& path) {
   Grid texels = texels_of(info.desc);
   if (const Attribute* kept = find_attribute(info.attributes, kRawExtent)) {
     const auto sides = numbers_json(kept->value);
-    TextureHead head;
-    if (const auto numbers = numbers_of(sides);
-        numbers.size() == 3 && numbers[0] > 0 && numbers[1] > 0 && numbers[2] > 0) {
-      head.texels = {numbers[0], numbers[1], numbers[2]};
+    const auto numbers = numbers_of(sides);
+    texels = {};
+    if (numbers.size() == 3 && numbers[0] > 0 && numbers[1] > 0 && numbers[2] > 0) {
+      texels = {numbers[0], numbers[1], numbers[2]};
     }
-    if (head.texels.x == 0 || !fits(head, info.desc)) {
+    const Grid records = texels.x == 0 ? Grid{} : records_of(texels, info.desc.record.format);
+    if (extent(info.desc) != Extent{records.x, records.y, records.z}) {
       fail(Exit::bad_input, "{}: attribute {} is of another texture", path, kRawExtent);
     }
-    texels = head.texels;
   }
   nlohmann::ordered_json json;
   json["format"] = std::string(find_format(info.desc.record.format)->name);

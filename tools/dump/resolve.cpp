@@ -7,7 +7,9 @@
 #include <gicodec/textures.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
+#include <set>
 
 namespace gicodec::tools {
 namespace {
@@ -20,13 +22,14 @@ class Resolver {
   Resolver(DumpInfo& info, const Hints& hints, const std::string& path)
       : info_(info), hints_(hints), path_(path) {}
 
-  void run(const FoundImage& found) {
+  /// Returns the channels that are not the texture's.
+  std::vector<FoundChannel> run(const FoundImage& found) {
     TextureDesc& desc = info_.desc;
     desc.record = hints_.desc ? hints_.desc->record : Record(format(found));
-    set_channels(found);
+    std::vector<FoundChannel> others = set_channels(found);
     if (hints_.desc) {
       desc = *hints_.desc;
-      correct_all();
+      require_agreement();
     } else if (is_map(found)) {
       desc = map(found);
     } else {
@@ -37,6 +40,7 @@ class Resolver {
            gicodec::to_string(status), to_string(desc.grid), desc.block.x, 2 * desc.guard_band);
     }
     check_size(found);
+    return others;
   }
 
  private:
@@ -48,20 +52,15 @@ class Resolver {
     }
     return found;
   }
-  /// A hint replaces the attribute, so that files written later agree with their texels.
-  void correct(Attribute attribute) {
-    const Attribute* stored = find_attribute(info_.attributes, attribute.name);
-    if (stored == nullptr || same_meaning(*stored, attribute)) return;
-    set_attribute(info_.attributes, std::move(attribute));
-  }
-
   /// True if the texture is a map, false if it is of probes.
   bool is_map(const FoundImage& found) {
     if (hints_.grid) return false;
     if (hints_.block || hints_.extent) return true;
     if (find_attribute(info_.attributes, kGrid) != nullptr) return false;
-    return found.channels.empty() || find_attribute(info_.attributes, kBlock) != nullptr ||
-           find_attribute(info_.attributes, kExtent) != nullptr;
+    const bool probes = hints_.core || hints_.guard_band || hints_.tiling ||
+                        find_attribute(info_.attributes, kCore) != nullptr ||
+                        find_attribute(info_.attributes, kTiling) != nullptr;
+    return found.channels.empty() || !probes;
   }
 
   void set_probes(std::uint32_t width) {
@@ -116,20 +115,18 @@ class Resolver {
                        size.slices == 1 ? "" : fmt::format(" in {} slices", size.slices));
   }
 
-  void correct_all() {
+  /// Throws if attributes contradict the hints' texture, where that has an origin.
+  void require_agreement() {
+    if (hints_.agreed.empty()) return;
     Attributes own;
     describe(own, info_.desc);
     std::reverse(own.begin(), own.end());  // format, grid and extent matter more than blocks
-    for (Attribute& attribute : own) {
-      if (!hints_.agreed.empty()) require_agreement(attribute);
-      correct(std::move(attribute));
+    for (const Attribute& attribute : own) {
+      const Attribute* stored = find_attribute(info_.attributes, attribute.name);
+      if (stored == nullptr || same_meaning(*stored, attribute)) continue;
+      fail(Exit::bad_input, "{}: says that {} is {}, but by {} it is {}; check --layout and --grid",
+           path_, attribute.name, stored->value, hints_.agreed, attribute.value);
     }
-  }
-  void require_agreement(const Attribute& attribute) {
-    const Attribute* stored = find_attribute(info_.attributes, attribute.name);
-    if (stored == nullptr || same_meaning(*stored, attribute)) return;
-    fail(Exit::bad_input, "{}: says that {} is {}, but by {} it is {}; check --layout and --grid",
-         path_, attribute.name, stored->value, hints_.agreed, attribute.value);
   }
 
   static bool fits_a_format(const FoundImage& found) {
@@ -141,7 +138,6 @@ class Resolver {
   }
   Format format(const FoundImage& found) {
     if (hints_.format) {
-      correct(format_attribute(*hints_.format));
       return *hints_.format;
     }
     if (const Attribute* text = attribute(kFormat, "string")) {
@@ -160,42 +156,45 @@ class Resolver {
                               : "write it in another, since no known format has as many bytes");
   }
 
+  /// The format whose components the channels are, if they are R, G, B and A or some of them.
   Format format_from_channels(const std::vector<FoundChannel>& found) {
     std::string names;
-    bool all_half = true, all_float = true;
+    std::set<SampleType> types;
     for (const FoundChannel& channel : found) {
       std::string name = channel.name;
       if (!hints_.channels.empty()) {
-        const auto mapped = std::find_if(hints_.channels.begin(), hints_.channels.end(),
-                                         [&](auto& item) { return item.second == channel.name; });
+        const auto mapped = std::ranges::find_if(
+            hints_.channels, [&](const auto& item) { return item.second == channel.name; });
         if (mapped == hints_.channels.end()) continue;
         name = mapped->first;
       }
       names += name;
-      all_half &= channel.type == SampleType::half;
-      all_float &= channel.type == SampleType::float32;
+      types.insert(channel.type);
     }
-    std::sort(names.begin(), names.end());
-    if (names == "R" && all_half) return Format::R16_SFLOAT;
-    if (names == "R" && all_float) return Format::R32_SFLOAT;
-    if (names == "GR" && all_half) return Format::R16G16_SFLOAT;
-    if (names == "GR" && all_float) return Format::R32G32_SFLOAT;
-    if (names == "BGR" || names == "ABGR") return Format::A2R10G10B10_UNORM_PACK32;
+    std::ranges::sort(names);
+    const bool color = names == "BGR" || names == "ABGR";
+    if (color && !hints_.plain) {
+      info_.guessed = true;
+      return Format::A2R10G10B10_UNORM_PACK32;
+    }
+    info_.fell_back = color;
+    constexpr std::array<std::string_view, 4> kNames = {"R", "GR", "BGR", "ABGR"};
+    const auto count = static_cast<std::size_t>(std::ranges::find(kNames, names) - kNames.begin());
+    if (count < kNames.size() && types.size() == 1) {
+      return floats_of(*types.begin())[count];
+    }
     fail(Exit::bad_input,
-         "{}: no attribute {}, and its channels {} do not determine the format; use --vk-format, "
-         "and "
-         "where the channels have other names than R, G, B, A, {}",
-         path_, kFormat, listed(found, &FoundChannel::name),
-         mapping_for(found, names == "GR" ? "RG" : "RGB"));
+         "{}: its channels {} do not determine a format; use --vk-format, and where the channels "
+         "have other names than R, G, B, A, {}",
+         path_, listed(found, &FoundChannel::name), mapping_for(found, "RGB"));
   }
 
   /// "--channels R=irr.R,G=irr.G", a suggestion from the file's channel names.
   static std::string mapping_for(const std::vector<FoundChannel>& found, std::string_view letters) {
     std::string text;
     for (const char wanted : letters) {
-      const auto at = std::find_if(found.begin(), found.end(), [&](const FoundChannel& channel) {
-        return channel.name.ends_with(wanted);
-      });
+      const auto at = std::ranges::find_if(
+          found, [&](const FoundChannel& channel) { return channel.name.ends_with(wanted); });
       text += fmt::format("{}{}={}", text.empty() ? "--channels " : ",", wanted,
                           at == found.end() ? "NAME" : at->name);
     }
@@ -209,15 +208,15 @@ class Resolver {
     return std::ranges::find(found, "E", &FoundChannel::name) != found.end();
   }
 
-  void set_channels(const FoundImage& image) {
+  std::vector<FoundChannel> set_channels(const FoundImage& image) {
     if (image.channels.empty()) {
       info_.channels = default_channels(info_.desc.record.format);
-      return;
+      return {};
     }
     const std::vector<FoundChannel>& found = image.channels;
     const FormatInfo& format = *find_format(info_.desc.record.format);
     info_.channels.exponent = !has_exponent(format.record) || has_exponent_channel(found);
-    std::vector<FoundChannel> unused = found;
+    std::vector<FoundChannel> others = found;
     for (std::size_t i = 0; i < format.record.count; ++i) {
       const Component& component = format.record.components[i];
       if (component.type == ComponentType::exponent && !info_.channels.exponent) continue;
@@ -226,14 +225,12 @@ class Resolver {
         const auto mapped = hints_.channels.find(letter(component));
         wanted = mapped == hints_.channels.end() ? "" : mapped->second;
       }
-      const auto at = std::find_if(unused.begin(), unused.end(), [&](const FoundChannel& channel) {
-        return channel.name == wanted;
-      });
-      if (at == unused.end() && !hints_.channels.empty() && !wanted.empty()) {
+      const auto at = std::ranges::find(others, wanted, &FoundChannel::name);
+      if (at == others.end() && !hints_.channels.empty() && !wanted.empty()) {
         fail(Exit::bad_input, "{}: has no channel {} for {}; its channels are {}", path_, wanted,
              letter(component), listed(found, &FoundChannel::name));
       }
-      if (at == unused.end()) {
+      if (at == others.end()) {
         if (letter(component) != 'A') {
           std::string letters;
           for (const Component& each : format.record.used()) {
@@ -247,35 +244,29 @@ class Resolver {
         continue;
       }
       if (!can_hold(info_.channels, at->type, component, format.record)) {
-        fail(Exit::bad_input, "{}: channel {} is {}, which does not hold {}", path_, at->name,
-             to_string(at->type), format.name);
+        fail(Exit::bad_input,
+             "{}: channel {} is {}, which does not hold {}; without --vk-format "
+             "it is kept as it is",
+             path_, at->name, to_string(at->type), format.name);
       }
       info_.channels.types[i] = at->type;
       info_.channels.names[i] = wanted == std::string{letter(component)} ? "" : wanted;
-      unused.erase(at);
+      others.erase(at);
     }
-    if (!hints_.channels.empty()) {
-      for (const auto& mapping : hints_.channels) {
-        const char wanted = mapping.first;
-        if (std::none_of(format.record.used().begin(), format.record.used().end(),
-                         [&](const Component& each) { return letter(each) == wanted; })) {
-          fail(Exit::usage, "{}: --channels names {}, which {} does not have", path_, wanted,
-               format.name);
-        }
+    for (const auto& [wanted, channel] : hints_.channels) {
+      const auto is_wanted = [&, letter_wanted = wanted](const Component& each) {
+        return letter(each) == letter_wanted;
+      };
+      if (std::ranges::none_of(format.record.used(), is_wanted)) {
+        fail(Exit::usage, "{}: --channels names {}, which {} does not have", path_, wanted,
+             format.name);
       }
-      for (const FoundChannel& channel : unused) info_.unused.push_back(channel.name);
-      return;
     }
-    if (!unused.empty()) {
-      fail(Exit::bad_input,
-           "{}: channel {} does not belong to {}; --channels R=NAME,... picks those to keep", path_,
-           unused.front().name, format.name);
-    }
+    return others;
   }
 
   Grid grid() {
     if (hints_.grid) {
-      correct(grid_attribute(*hints_.grid));
       return *hints_.grid;
     }
     const Attribute* found = attribute(kGrid, "v3i");
@@ -295,7 +286,6 @@ class Resolver {
   std::optional<Grid> sides(std::string_view name, const std::optional<Grid>& hint,
                             std::uint32_t most, std::string_view flag) {
     if (hint) {
-      correct(sides_attribute(name, *hint));
       return hint;
     }
     const Attribute* found = attribute(name, "v3i");
@@ -311,7 +301,6 @@ class Resolver {
 
   Tiling tiling() {
     if (hints_.tiling) {
-      correct(tiling_attribute(*hints_.tiling));
       return *hints_.tiling;
     }
     const Attribute* found = attribute(kTiling, "string");
@@ -328,7 +317,6 @@ class Resolver {
   std::optional<std::uint8_t> number(std::string_view name, std::optional<std::uint16_t> hint,
                                      std::string_view flag) {
     if (hint) {
-      correct(int_attribute(name, *hint));
       return static_cast<std::uint8_t>(std::min<std::uint16_t>(*hint, 255));
     }
     const Attribute* found = attribute(name, "int");
@@ -383,8 +371,23 @@ class Resolver {
 
 }  // namespace
 
-void resolve(DumpInfo& info, const FoundImage& found, const Hints& hints, const std::string& path) {
-  Resolver(info, hints, path).run(found);
+std::array<Format, 4> floats_of(SampleType type) noexcept {
+  switch (type) {
+    case SampleType::half:
+      return {Format::R16_SFLOAT, Format::R16G16_SFLOAT, Format::R16G16B16A16_SFLOAT,
+              Format::R16G16B16A16_SFLOAT};
+    case SampleType::float32:
+      return {Format::R32_SFLOAT, Format::R32G32_SFLOAT, Format::R32G32B32_SFLOAT,
+              Format::R32G32B32A32_SFLOAT};
+    case SampleType::uint32:
+      break;
+  }
+  return {Format::R32_UINT, Format::R32G32_UINT, Format::R32G32B32_UINT, Format::R32G32B32A32_UINT};
+}
+
+std::vector<FoundChannel> resolve(DumpInfo& info, const FoundImage& found, const Hints& hints,
+                                  const std::string& path) {
+  return Resolver(info, hints, path).run(found);
 }
 
 }  // namespace gicodec::tools

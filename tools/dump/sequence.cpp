@@ -128,6 +128,7 @@ void refuse_gaps(const std::vector<Sequence>& sequences, const char* cure) {
   const auto frames = all_frames(sequences);
   for (const Sequence& sequence : sequences) {
     for (std::size_t i = 0; i < frames.size(); ++i) {
+      if (sequence.digits == 0) break;  // A still has one frame beside a sequence.
       const bool hole = i > 0 && frames[i] != frames[i - 1] + 1;
       const std::uint64_t missing = hole ? frames[i - 1] + 1 : frames[i];
       if (!hole && sequence.find(missing) != nullptr) continue;

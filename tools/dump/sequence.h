@@ -30,8 +30,8 @@ struct Sequence {
 /// separator or none it is a frame's if it has three digits (none: four), or if several files
 /// differ only in it; else it belongs to the name.
 /// Errors: a texture with two separators; the same frame twice; numbers of different width; unless
-/// `allow_gaps`, a missing frame that another texture has or that lies between two frames, with
-/// `cure` as a hint.
+/// `allow_gaps`, a missing frame that another numbered texture has or that lies between two frames,
+/// with `cure` as a hint.
 [[nodiscard]] std::vector<Sequence> group_sequences(const std::vector<std::string>& paths,
                                                     bool allow_gaps = false,
                                                     const char* cure = "--allow-gaps accepts that");

@@ -16,8 +16,9 @@
 namespace gicodec::tools {
 namespace {
 
-constexpr std::array<std::string_view, 5> kHeadFields = {kDdsHeader, kKtx2Header, kKtx2Format,
-                                                         kRawSidecar, kRawExtent};
+constexpr std::array<std::string_view, 8> kHeadFields = {kDdsHeader,  kKtx2Head,   kKtx2Scheme,
+                                                         kRawSidecar, kRawExtent,  kExrOrigin,
+                                                         kExrLinear,  kExrSampling};
 
 /// Types of the gicodec:* attributes that are not strings.
 struct TypeRow {
@@ -38,19 +39,39 @@ TextureHead read_head(TextureFile& file, ImageKind kind, const Hints& hints) {
     case ImageKind::ktx2:
       return read_ktx2_head(file);
     default:
-      return read_raw_head(file, hints.desc);
+      return read_raw_head(file, hints);
   }
 }
 
-void drop_implied(DumpInfo& info, ImageKind kind) {
-  if (kind == ImageKind::dds) drop_implied_dds(info);
-  if (kind == ImageKind::ktx2) drop_implied_ktx2(info);
-  if (kind == ImageKind::raw) drop_implied_raw(info);
+/// Attributes of the head that do not follow from the texture.
+void keep_head(TextureFile& file, const TextureHead& head, ImageKind kind, DumpInfo& first) {
+  if (kind == ImageKind::dds) keep_dds_header(head, first);
+  if (kind == ImageKind::ktx2) keep_ktx2_head(file, head, first);
+  if (kind == ImageKind::raw) drop_implied_raw(first);
 }
 
 /// Throws if the file lacks texels, or has more bytes, which would be lost.
-void check_bytes(const TextureFile& file, const TextureHead& head, const TextureDesc& desc) {
-  const std::uint64_t wanted = texture_bytes(desc);
+void check_bytes(const TextureFile& file, const TextureHead& head, Format format) {
+  const std::uint64_t wanted = all_bytes(head, format);
+  if (!head.stored.empty()) {
+    for (std::uint32_t level = 0; level < head.levels; ++level) {
+      const StoredLevel& stored = head.stored[level];
+      const std::uint64_t own = level_bytes(head, level, format);
+      if (stored.offset > file.size() || file.size() - stored.offset < stored.bytes) {
+        fail(Exit::bad_input,
+             "{}: is truncated: level {} takes {} bytes from byte {} on, and it has {}",
+             file.path(), level, stored.bytes, stored.offset, file.size());
+      }
+      if (stored.unpacked != own) {
+        fail(Exit::bad_input,
+             "{}: level {} has {} bytes, and {} texels of {} take {}; check its format, or "
+             "--vk-format",
+             file.path(), level, stored.unpacked, to_string(level_texels(head, level)),
+             find_format(format)->name, own);
+      }
+    }
+    return;
+  }
   if (head.offset > file.size() || file.size() - head.offset < wanted) {
     fail(Exit::bad_input,
          "{}: is truncated: its texels take {} bytes from byte {} on, and it has {}", file.path(),
@@ -61,8 +82,32 @@ void check_bytes(const TextureFile& file, const TextureHead& head, const Texture
          "{}: has {} bytes from its first texel on, but {} make its {}; check its format, or "
          "--vk-format",
          file.path(), std::max(head.bytes, file.size() - head.offset), wanted,
-         find_format(desc.record.format)->name);
+         find_format(format)->name);
   }
+}
+
+/// Reads an image's slices from where they are.
+std::vector<std::byte> read_slices(TextureFile& file, const TextureHead& head, ImageKind kind,
+                                   const DumpInfo& info) {
+  const Format format = info.desc.record.format;
+  const bool levels = kind == ImageKind::ktx2;
+  const Runs runs =
+      levels ? runs_by_level(head, info.place, format) : runs_by_element(head, info.place, format);
+  std::vector<std::byte> texels(runs.count * runs.bytes);
+  if (head.scheme != Scheme::none) {
+    const StoredLevel& stored = head.stored[info.place.level];
+    const auto packed = file.read(stored.offset, static_cast<std::size_t>(stored.bytes));
+    const auto level =
+        unpack_level(head.scheme, packed, static_cast<std::size_t>(stored.unpacked), file.path());
+    gather(level, runs, texels);
+    return texels;
+  }
+  const std::uint64_t begin =
+      runs.first + (levels ? head.stored[info.place.level].offset : head.offset);
+  for (std::uint32_t i = 0; i < runs.count; ++i) {
+    file.read(begin + i * runs.stride, std::span(texels).subspan(i * runs.bytes, runs.bytes));
+  }
+  return texels;
 }
 
 /// Writes the sidecar; one that all frames share is written with the first.
@@ -132,45 +177,59 @@ Attribute text_attribute(std::string name, std::string_view text) {
           std::string(text)};
 }
 
+bool is_compressed(Format format) noexcept {
+  const FormatInfo* const info = find_format(format);
+  return info != nullptr && info->width > 1;
+}
+
 Grid texels_of(const TextureDesc& desc) noexcept {
   const Extent size = extent(desc);
-  const std::uint64_t each = texels_of_record(desc.record.format);
-  return {static_cast<std::uint32_t>(size.width * each),
-          static_cast<std::uint32_t>(size.height * each), static_cast<std::uint32_t>(size.slices)};
+  const FormatInfo* const format = find_format(desc.record.format);
+  const std::uint64_t width = format == nullptr ? 1 : format->width,
+                      height = format == nullptr ? 1 : format->height;
+  return {static_cast<std::uint32_t>(size.width * width),
+          static_cast<std::uint32_t>(size.height * height),
+          static_cast<std::uint32_t>(size.slices)};
 }
 
 Grid records_of(const Grid& texels, Format format) noexcept {
-  const std::uint32_t each = texels_of_record(format);
-  return {(texels.x - 1) / each + 1, (texels.y - 1) / each + 1, texels.z};
+  const FormatInfo* const info = find_format(format);
+  if (info == nullptr) return texels;
+  return {(texels.x - 1) / info->width + 1, (texels.y - 1) / info->height + 1, texels.z};
 }
 
 bool is_head_field(std::string_view name) noexcept {
   return std::ranges::find(kHeadFields, name) != kHeadFields.end();
 }
 
-void drop_size_fields(Attributes& attributes) {
-  std::erase_if(attributes, [](const Attribute& attribute) {
-    return attribute.name == "displayWindow" || attribute.name == kDdsHeader ||
-           attribute.name == kKtx2Header || attribute.name == kRawExtent;
+std::vector<std::string> drop_size_fields(Attributes& attributes) {
+  std::vector<std::string> dropped;
+  std::erase_if(attributes, [&](const Attribute& attribute) {
+    const std::string& name = attribute.name;
+    const bool follows = name == kRawExtent;
+    const bool drops = follows || name == "displayWindow" || name == kDdsHeader ||
+                       name == kKtx2Head || name == kExrOrigin;
+    if (drops && !follows) dropped.push_back(name);
+    return drops;
   });
+  return dropped;
 }
 
-bool fits(const TextureHead& head, const TextureDesc& desc) noexcept {
-  const Grid records = records_of(head.texels, desc.record.format);
-  const bool size = extent(desc) == Extent{records.x, records.y, records.z};
-  return size && (!head.format || Record(*head.format).bytes == desc.record.bytes);
-}
+namespace {
 
-DumpInfo texture_info(const TextureHead& head, ImageKind kind, const Hints& hints,
-                      const std::string& path) {
+DumpInfo texture_info(const TextureHead& head, const ImagePlace& place, bool first,
+                      const Hints& hints, const std::string& path) {
   DumpInfo info;
-  info.attributes = head.attributes;
+  info.place = place;
+  info.image = image_name(head, place);
+  info.head = first;
+  if (first) info.attributes = head.attributes;
   FoundImage found;
   found.format = head.format;
   found.format_name = head.format_name;
-  found.texels = head.texels;
+  found.texels = level_texels(head, place.level);
   found.volume = head.volume;
-  found.bytes = head.bytes;
+  found.bytes = head.levels > 1 || head.faces > 1 ? 0 : head.bytes;
   resolve(info, found, hints, path);
   const Record& record = info.desc.record;
   const bool other = head.format && *head.format != record.format;
@@ -180,37 +239,67 @@ DumpInfo texture_info(const TextureHead& head, ImageKind kind, const Hints& hint
          find_format(record.format)->name,
          format_given ? ", whose texels have another size; check --vk-format" : "");
   }
-  drop_implied(info, kind);
   return info;
 }
 
-Dump read_texture_file(const std::string& path, ImageKind kind, const Hints& hints, bool texels) {
+}  // namespace
+
+std::vector<DumpInfo> texture_infos(const TextureHead& head, const Hints& hints,
+                                    const std::string& path) {
+  const std::vector<ImagePlace> places = places_of(head);
+  if (hints.place) {
+    const auto at = std::ranges::find(places, *hints.place);
+    if (at == places.end()) {
+      fail(Exit::bad_input, "{}: has no image {}: another file took its place?", path,
+           hints.image.empty() ? "0" : hints.image);
+    }
+    return {texture_info(head, *at, at == places.begin(), hints, path)};
+  }
+  std::vector<DumpInfo> infos;
+  Hints own = hints;
+  for (const ImagePlace& place : places) {
+    infos.push_back(texture_info(head, place, infos.empty(), own, path));
+    if (infos.size() > 1) continue;
+    // The others are read as the first is, in blocks of their own size.
+    own = {};
+    own.format = infos.front().desc.record.format;
+    own.block = hints.block;
+  }
+  return infos;
+}
+
+std::vector<Dump> read_texture_file(const std::string& path, ImageKind kind, const Hints& hints,
+                                    bool texels) {
   TextureFile file(path);
   const TextureHead head = read_head(file, kind, hints);
-  Dump dump;
-  dump.info = texture_info(head, kind, hints, path);
-  check_bytes(file, head, dump.info.desc);
-  if (!texels) return dump;
+  std::vector<Dump> dumps;
+  for (DumpInfo& info : texture_infos(head, hints, path)) {
+    if (dumps.empty()) check_bytes(file, head, info.desc.record.format);
+    if (info.head) keep_head(file, head, kind, info);
+    dumps.push_back({std::move(info), {}});
+  }
   try {
-    dump.texels.resize(static_cast<std::size_t>(head.bytes));
+    for (Dump& dump : dumps) {
+      if (texels) dump.texels = read_slices(file, head, kind, dump.info);
+    }
   } catch (const std::bad_alloc&) {
     fail(Exit::internal, "{}: not enough memory", path);
   }
-  file.read(head.offset, dump.texels);
-  return dump;
+  return dumps;
 }
 
-void write_texture_file(const std::string& path, ImageKind kind, const DumpInfo& info,
-                        std::span<const std::byte> texels, Existing existing) {
-  check_texels(info, texels, path);
-  std::vector<std::byte> head;
-  if (kind == ImageKind::dds) head = dds_head(info, path);
-  if (kind == ImageKind::ktx2) head = ktx2_head(info, path);
+void write_texture_file(const std::string& path, ImageKind kind, std::span<const Dump> images,
+                        Existing existing) {
+  for (const Dump& image : images) check_texels(image.info, image.texels, path);
+  if (kind == ImageKind::dds) return write_file(path, dds_file(images, path), existing);
+  if (kind == ImageKind::ktx2) return write_file(path, ktx2_file(images, path), existing);
+  if (images.size() > 1) {
+    fail(Exit::bad_input, "{}: a raw file holds one image, and there are {}", path, images.size());
+  }
   AtomicFile file(path, existing);
-  file.write(head);
-  file.write(texels);
+  file.write(images.front().texels);
   // After the steps that fail most often, so that no sidecar is left without texels.
-  if (kind == ImageKind::raw) write_sidecar(path, info, existing);
+  write_sidecar(path, images.front().info, existing);
   file.commit();
 }
 

@@ -1,8 +1,10 @@
 // Texture files hold texels as in memory, behind a head that describes them: DDS, KTX2 and raw. One
-// file holds one frame of a texture of two or three dimensions, or of an array.
+// file holds one frame of a texture of two or three dimensions, or of an array, with its mip levels
+// and the faces of cubes: an image for each level and face.
 #pragma once
 
 #include "dump/dump.h"
+#include "dump/supercompression.h"
 
 #include <cstdint>
 #include <cstdio>
@@ -16,16 +18,60 @@
 
 namespace gicodec::tools {
 
+/// Where a level's bytes are, in a file that lists its levels.
+struct StoredLevel {
+  std::uint64_t offset = 0, bytes = 0, unpacked = 0;
+};
+
 /// A file's head. It is consistent, but its sizes are not yet compared with the file's.
 struct TextureHead {
-  std::optional<Format> format;  ///< nullopt: unknown
-  std::string format_name;       ///< the file's name for it, for messages: "DXGI format 29"
-  Grid texels;                   ///< width, height, depth or array elements; each 1 or more
-  bool volume = false;           ///< three dimensions, not an array
-  std::uint64_t offset = 0;      ///< of the first texel in the file
-  std::uint64_t bytes = 0;       ///< of all texels
+  std::optional<Format> format;     ///< nullopt: unknown
+  std::string format_name;          ///< the file's name for it, for messages: "DXGI format 29"
+  Grid texels;                      ///< width, height, depth or array elements; each 1 or more
+  bool volume = false;              ///< three dimensions, not an array
+  std::uint32_t levels = 1;         ///< mip levels
+  std::uint32_t faces = 1;          ///< of each element, 6 for cubes
+  std::uint64_t offset = 0;         ///< of the first texel in the file
+  std::uint64_t bytes = 0;          ///< of all texels, in the file
+  std::vector<StoredLevel> stored;  ///< of KTX2, by level
+  Scheme scheme = Scheme::none;     ///< of KTX2
   Attributes attributes;
 };
+/// Most levels of a texture: sides are below 2^32.
+inline constexpr std::uint32_t kMaxLevels = 32;
+
+/// Size of a level.
+[[nodiscard]] Grid level_texels(const TextureHead& head, std::uint32_t level) noexcept;
+/// "py.mip2"; empty for the only image of a file and the first level of a texture that is no cube.
+[[nodiscard]] std::string image_name(const TextureHead& head, const ImagePlace& place);
+/// All images of a file, level by level.
+[[nodiscard]] std::vector<ImagePlace> places_of(const TextureHead& head);
+
+/// Runs of bytes, one for each slice of an image.
+struct Runs {
+  std::uint64_t first = 0, stride = 0;
+  std::size_t bytes = 0;
+  std::uint32_t count = 0;
+};
+/// Where an image's slices are: in all texels of a file that goes element by element, as DDS does,
+/// or in those of its level.
+[[nodiscard]] Runs runs_by_element(const TextureHead& head, const ImagePlace& place, Format format);
+[[nodiscard]] Runs runs_by_level(const TextureHead& head, const ImagePlace& place, Format format);
+/// Bytes of a level, and of all.
+[[nodiscard]] std::uint64_t level_bytes(const TextureHead& head, std::uint32_t level,
+                                        Format format) noexcept;
+[[nodiscard]] std::uint64_t all_bytes(const TextureHead& head, Format format) noexcept;
+/// Puts an image's slices in their places.
+void scatter(std::span<const std::byte> texels, const Runs& runs, std::span<std::byte> into);
+/// The inverse.
+void gather(std::span<const std::byte> from, const Runs& runs, std::span<std::byte> texels);
+
+/// The head of a file of these images, if no other is kept. Throws unless they are all levels and
+/// faces of a texture, level by level.
+[[nodiscard]] TextureHead head_of(std::span<const Dump> images, const std::string& path);
+/// Throws unless the images are those of the head, and have its sizes.
+void require_fit(const TextureHead& head, std::span<const Dump> images, const char* attribute,
+                 const std::string& path);
 
 /// Largest head that is read.
 inline constexpr std::uint64_t kMaxHeadBytes = std::uint64_t{16} << 20;
@@ -66,10 +112,8 @@ inline void set_word(std::span<std::byte> bytes, std::size_t offset, std::uint32
 /// files, others are strings.
 [[nodiscard]] Attribute text_attribute(std::string name, std::string_view text);
 
-/// Texels of a record along x and y: 4 for compressed blocks, else 1.
-[[nodiscard]] constexpr std::uint32_t texels_of_record(Format format) noexcept {
-  return format >= Format::BC6H_UFLOAT_BLOCK && format <= Format::BC7_SRGB_BLOCK ? 4 : 1;
-}
+/// Texels of a record along x and y: more than 1 for compressed blocks.
+[[nodiscard]] bool is_compressed(Format format) noexcept;
 /// Size of a texture's file, in texels; compressed blocks count in full.
 [[nodiscard]] Grid texels_of(const TextureDesc& desc) noexcept;
 /// Size of a file, in records of a format.
@@ -79,32 +123,36 @@ inline void set_word(std::span<std::byte> bytes, std::size_t offset, std::uint32
 
 // Attributes of these names are fields of a file's head that do not follow from the texture.
 inline constexpr const char* kDdsHeader = "dds:header";    ///< the whole header
-inline constexpr const char* kKtx2Header = "ktx2:header";  ///< the first 48 bytes
-inline constexpr const char* kKtx2Format = "ktx2:dfd";     ///< the data format descriptor
+inline constexpr const char* kKtx2Head = "ktx2:head";      ///< all bytes that are no texels
+inline constexpr const char* kKtx2Scheme = "ktx2:scheme";  ///< of supercompression
 inline constexpr const char* kRawSidecar = "raw:sidecar";  ///< "shared" by all frames, or "none"
 inline constexpr const char* kRawExtent = "raw:extent";  ///< set if compressed blocks are not full
 [[nodiscard]] bool is_head_field(std::string_view name) noexcept;
-/// True if a file of this texture can have such a head; a format of the same size also fits.
-[[nodiscard]] bool fits(const TextureHead& head, const TextureDesc& desc) noexcept;
 
-/// The texture of a head, with the attributes that do not follow from it.
-[[nodiscard]] DumpInfo texture_info(const TextureHead& head, ImageKind kind, const Hints& hints,
-                                    const std::string& path);
+/// The images of a head, or the one that the hints name; the first has the attributes.
+[[nodiscard]] std::vector<DumpInfo> texture_infos(const TextureHead& head, const Hints& hints,
+                                                  const std::string& path);
 
 [[nodiscard]] bool dds_has_format(Format format) noexcept;
 [[nodiscard]] TextureHead read_dds_head(TextureFile& file);
-/// Removes attributes that follow from the texture.
-void drop_implied_dds(DumpInfo& info);
-/// All bytes before the first texel. Throws for a format that DDS files cannot hold, and for an
-/// attribute dds:header of another texture.
-[[nodiscard]] std::vector<std::byte> dds_head(const DumpInfo& info, const std::string& path);
+/// A whole file. Throws for a format that DDS files cannot hold, and for an attribute dds:header of
+/// another texture.
+[[nodiscard]] std::vector<std::byte> dds_file(std::span<const Dump> images,
+                                              const std::string& path);
+/// Sets attribute dds:header unless it follows from the texture.
+void keep_dds_header(const TextureHead& head, DumpInfo& first);
 
 [[nodiscard]] TextureHead read_ktx2_head(TextureFile& file);
-void drop_implied_ktx2(DumpInfo& info);
-[[nodiscard]] std::vector<std::byte> ktx2_head(const DumpInfo& info, const std::string& path);
+/// A whole file.
+[[nodiscard]] std::vector<std::byte> ktx2_file(std::span<const Dump> images,
+                                               const std::string& path);
+/// Sets attribute ktx2:head unless it follows from the texture and the attributes, and notes what
+/// cannot be kept.
+void keep_ktx2_head(TextureFile& file, const TextureHead& head, DumpInfo& first);
 
-/// The head of a raw file from its sidecar, NAME.FFFF.json or NAME.json; without one from `known`.
-[[nodiscard]] TextureHead read_raw_head(TextureFile& file, const std::optional<TextureDesc>& known);
+/// The head of a raw file from its sidecar, NAME.FFFF.json or NAME.json; without one from the
+/// hints: a texture, or format and extent.
+[[nodiscard]] TextureHead read_raw_head(TextureFile& file, const Hints& hints);
 void drop_implied_raw(DumpInfo& info);
 /// The head in a sidecar's text, without the size of texels.
 [[nodiscard]] TextureHead parse_sidecar(const std::string& text, const std::string& path);

@@ -5,8 +5,10 @@
 #include "dump/dump.h"
 #include "dump/file.h"
 #include "dump/sequence.h"
+#include "dump/text.h"
 #include "geometry_flags.h"
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -50,6 +52,7 @@ struct Pair {
 
 struct Compared {
   Pair pair;
+  std::string image;  ///< empty: the main one, or all there is
   TextureDesc desc;
   Difference difference;
   std::vector<std::string> headers;
@@ -98,11 +101,7 @@ std::vector<Pair> pairs_of(const CompareOptions& options) {
   return pairs_of_folders(options.left, options.right);
 }
 
-Compared compare_pair(const Pair& pair, const CompareOptions& options) {
-  const std::string name = group_sequences({pair.left}).front().name;
-  const Hints hints = hints_for(options.geometry, name);
-  const Dump left = read_dump(pair.left, hints);
-  const Dump right = read_dump(pair.right, hints);
+Compared compare_images(const Pair& pair, const Dump& left, const Dump& right, bool headers) {
   if (left.info.desc != right.info.desc) {
     const auto text = [](const TextureDesc& desc) {
       return fmt::format("{}, grid {}, {}+{} texels, {}", record_text(desc.record),
@@ -112,22 +111,59 @@ Compared compare_pair(const Pair& pair, const CompareOptions& options) {
     fail(Exit::bad_input, "{} and {} cannot be compared: {} against {}", pair.left, pair.right,
          text(left.info.desc), text(right.info.desc));
   }
-  // Files of different kinds have different attributes even for the same texels.
-  const bool headers = !options.texels_only && image_kind(pair.left) == image_kind(pair.right);
-  return {pair, left.info.desc, compare_texels(left.info.desc, left.texels, right.texels),
+  return {pair, left.info.image, left.info.desc,
+          compare_texels(left.info.desc, left.texels, right.texels),
           headers ? compare_headers(left.info, right.info) : std::vector<std::string>{}};
 }
 
+/// One for each image of the files.
+std::vector<Compared> compare_pair(const Pair& pair, const CompareOptions& options) {
+  const std::string name = group_sequences({pair.left}).front().name;
+  const Hints hints =
+      settle_formats(std::vector{pair.left, pair.right}, hints_for(options.geometry, name));
+  const std::vector<Dump> left = read_dumps(pair.left, hints),
+                          right = read_dumps(pair.right, hints);
+  const auto same_image = [](const Dump& a, const Dump& b) { return a.info.image == b.info.image; };
+  if (!std::ranges::equal(left, right, same_image)) {
+    const auto names = [](const std::vector<Dump>& images) {
+      return listed(images, [](const Dump& image) { return image_words(image.info); });
+    };
+    fail(Exit::bad_input, "{} and {} cannot be compared: they hold {} against {}", pair.left,
+         pair.right, names(left), names(right));
+  }
+  // Files of different kinds have different attributes even for the same texels.
+  const bool headers = !options.texels_only && image_kind(pair.left) == image_kind(pair.right);
+  std::vector<Compared> all;
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    all.push_back(compare_images(pair, left[i], right[i], headers));
+  }
+  return all;
+}
+
+/// What no dump keeps of the files, and what is not compared therefore.
+std::vector<std::string> not_compared(const Pair& pair, const CompareOptions& options) {
+  std::vector<std::string> lines;
+  for (const std::string& path : {pair.left, pair.right}) {
+    const std::string name = group_sequences({path}).front().name;
+    for (const DumpInfo& info : read_dump_infos(path, hints_for(options.geometry, name))) {
+      if (info.lost.empty()) continue;
+      lines.push_back(fmt::format("{}: {} not compared", path, fmt::join(info.lost, ", ")));
+    }
+  }
+  return lines;
+}
+
 void print_text(const Compared& compared) {
-  const auto& [pair, desc, difference, headers] = compared;
+  const auto& [pair, image, desc, difference, headers] = compared;
+  const std::string of = image.empty() ? "" : fmt::format("{} of ", image);
   const Record& record = desc.record;
   const char* const word = block_word(desc);
   if (compared.same()) {
-    print("{} and {} are identical: {} {}s, {} texels\n", pair.left, pair.right,
+    print("{}{} and {} are identical: {} {}s, {} texels\n", of, pair.left, pair.right,
           difference.total_probes, word, difference.total_texels);
     return;
   }
-  print("{} and {} differ\n", pair.left, pair.right);
+  print("{}{} and {} differ\n", of, pair.left, pair.right);
   for (const std::string& line : headers) print("  {}\n", line);
   print("  {} of {} {}s, {} of {} texels\n", difference.probes, difference.total_probes, word,
         difference.texels, difference.total_texels);
@@ -161,20 +197,27 @@ Exit compare(const CompareOptions& options, const Cli& cli) {
       json.push_back({{"left", pair.left}, {"right", pair.right}, {"missing", missing}});
       continue;
     }
-    const Compared compared = compare_pair(pair, options);
-    same &= compared.same();
-    if (options.format == "text") {
-      print_text(compared);
-      continue;
+    const std::vector<std::string> left_out = not_compared(pair, options);
+    for (const Compared& compared : compare_pair(pair, options)) {
+      same &= compared.same();
+      if (options.format == "text") {
+        print_text(compared);
+        continue;
+      }
+      nlohmann::ordered_json item = {{"left", pair.left}, {"right", pair.right}};
+      if (!compared.image.empty()) item["image"] = compared.image;
+      item.update(to_json(compared.difference, compared.desc.record));
+      item["identical"] = compared.same();
+      if (!compared.headers.empty()) item["headers"] = compared.headers;
+      if (!left_out.empty()) item["not_compared"] = left_out;
+      json.push_back(item);
     }
-    nlohmann::ordered_json item = {{"left", pair.left}, {"right", pair.right}};
-    item.update(to_json(compared.difference, compared.desc.record));
-    item["identical"] = compared.same();
-    if (!compared.headers.empty()) item["headers"] = compared.headers;
-    json.push_back(item);
+    if (options.format == "text") {
+      for (const std::string& line : left_out) print("{}\n", line);
+    }
   }
   if (options.format == "json") {
-    print_json(pairs.size() == 1 ? json.front() : json);
+    print_json(json.size() == 1 ? json.front() : json);
   }
   return same ? Exit::ok : Exit::different;
 }

@@ -5,6 +5,7 @@
 #include "dump/dump.h"
 #include "dump/file.h"
 #include "dump/sequence.h"
+#include "dump/text.h"
 #include "geometry_flags.h"
 
 #include <algorithm>
@@ -80,9 +81,9 @@ Dump crop_dump(const Dump& from, const Grid& origin, const Grid& size, const std
   to.info = from.info;
   to.info.desc.grid = size;
   to.info.desc.records = cropped_records(old_desc, origin, size);
-  describe(to.info.attributes, to.info.desc);
+  if (to.info.head) describe(to.info.attributes, to.info.desc);
   move_origin(to.info.attributes, origin);
-  drop_size_fields(to.info.attributes);
+  (void)drop_size_fields(to.info.attributes);
   const TextureDesc& desc = to.info.desc;
   to.texels.resize(static_cast<std::size_t>(texture_bytes(desc)));
   const Extent old_size = extent(old_desc), new_size = extent(desc);
@@ -120,6 +121,24 @@ void check_outputs(const CropOptions& options, const std::vector<Sequence>& sequ
   }
 }
 
+/// What cropped files lack of a file, in words; throws if its images are not of one grid.
+std::string not_kept(const std::vector<DumpInfo>& images, const std::string& path) {
+  std::vector<std::string> lost;
+  for (const DumpInfo& image : images) {
+    if (image.desc.grid != images.front().desc.grid || image.place.level > 0) {
+      fail(Exit::bad_input,
+           "{}: holds images of several sizes ({}), which are no box of one grid; \"gicodec "
+           "encode\" "
+           "and \"gicodec decode --files raw\" make a file of each",
+           path, listed(images, image_words));
+    }
+    lost.insert(lost.end(), image.lost.begin(), image.lost.end());
+    Attributes attributes = image.attributes;
+    for (std::string& name : drop_size_fields(attributes)) lost.push_back("attribute " + name);
+  }
+  return listed(lost, [](const std::string& what) { return what; });
+}
+
 Exit crop(const CropOptions& options, const Cli& cli) {
   const auto size = grid_from_string(options.size);
   if (!size) {
@@ -134,22 +153,35 @@ Exit crop(const CropOptions& options, const Cli& cli) {
   const auto sequences = group_sequences(options.inputs, options.allow_gaps);
   check_outputs(options, sequences);
   check_names(options.geometry, sequences);
-  const OutputDirectory directory(options.output);
   std::size_t files = 0;
-  for (const Sequence& sequence : sequences) files += sequence.frames.size();
+  std::vector<Hints> hints;
+  for (const Sequence& sequence : sequences) {
+    files += sequence.frames.size();
+    std::vector<std::string> paths;
+    for (const FrameFile& file : sequence.frames) paths.push_back(file.path);
+    hints.push_back(settle_formats(paths, hints_for(options.geometry, sequence.name)));
+    for (const std::string& path : paths) {
+      const std::string lost = not_kept(read_dump_infos(path, hints.back()), path);
+      if (!lost.empty() && !cli.quiet) remark(fmt::format("{}: {} not kept", path, lost));
+    }
+  }
+  const OutputDirectory directory(options.output);
   Progress progress("cropping file", files, cli);
   for (const Sequence& sequence : sequences) {
-    const Hints hints = hints_for(options.geometry, sequence.name);
+    const Hints& own = hints[static_cast<std::size_t>(&sequence - sequences.data())];
     for (const FrameFile& file : sequence.frames) {
       progress.step();
-      Dump dump = crop_dump(read_dump(file.path, hints), *origin, *size, file.path);
-      for (std::size_t i = 0; i < kCompressions.size(); ++i) {
-        if (options.compression != kCompressions[i]) continue;
-        set_attribute(dump.info.attributes,
-                      {"compression", "compression", fmt::format("0x0{}", i)});
+      std::vector<Dump> images = read_dumps(file.path, own);
+      for (Dump& image : images) {
+        image = crop_dump(image, *origin, *size, file.path);
+        for (std::size_t i = 0; image.info.head && i < kCompressions.size(); ++i) {
+          if (options.compression != kCompressions[i]) continue;
+          set_attribute(image.info.attributes,
+                        {"compression", "compression", fmt::format("0x0{}", i)});
+        }
       }
-      write_dump(output_path(options, sequence, file.frame), dump.info, dump.texels,
-                 overwrite_if(options.overwrite));
+      write_dumps(output_path(options, sequence, file.frame), images,
+                  overwrite_if(options.overwrite));
     }
   }
   if (!cli.quiet) {

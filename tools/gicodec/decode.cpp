@@ -10,6 +10,7 @@
 #include "common/volume_words.h"
 #include "dump/dump.h"
 #include "dump/file.h"
+#include "dump/texture_file.h"
 
 #include <algorithm>
 #include <atomic>
@@ -46,6 +47,7 @@ struct DecodeOptions {
   DecoderFlags decoder;
   bool allow_incomplete = false;
   bool overwrite = false;
+  bool plain = false;
 };
 
 /// Throws for a second frame of a texture whose file names have no number.
@@ -60,9 +62,8 @@ void check_numbered(const StoredTexture& texture, std::optional<std::uint64_t>& 
   written = frame;
 }
 
-/// Throws if an incomplete texture would replace a file that may be its only original.
-void keep_original(const std::string& path, const StoredTexture& texture, const DumpInfo& info,
-                   std::span<const std::byte> texels) {
+/// Throws if a file that lacks something would replace one that may be its only original.
+void keep_original(const std::string& path, const StoredTexture& texture, const Dump& image) {
   const std::string lacks = texture.lacks();
   if (lacks.empty() || !std::filesystem::exists(path)) return;
   std::optional<Dump> old;
@@ -71,10 +72,8 @@ void keep_original(const std::string& path, const StoredTexture& texture, const 
   } catch (const Error&) {
     return;  // not a dump of this texture
   }
-  const bool same =
-      std::equal(texels.begin(), texels.end(), old->texels.begin(), old->texels.end());
-  if (same && old->info.attributes == info.attributes && old->info.dropped.empty() &&
-      old->info.unused.empty()) {
+  if (image.texels == old->texels && old->info.attributes == image.info.attributes &&
+      old->info.lost.empty()) {
     return;
   }
   fail(Exit::io,
@@ -83,10 +82,45 @@ void keep_original(const std::string& path, const StoredTexture& texture, const 
        path, texture.name, lacks);
 }
 
+/// Writes the file of a frame's textures that are its images.
+void write_file_of(const ContainerInput& input, std::span<const std::size_t> textures,
+                   const std::string& path, const InputFiles& inputs, bool overwrite) {
+  std::vector<Dump> images;
+  for (const std::size_t id : textures) {
+    images.push_back({input.textures()[id].decoded_info(input.frame()), input.texels(id)});
+  }
+  check_output(path, inputs, overwrite_if(overwrite));
+  for (std::size_t i = 0; overwrite && i < images.size(); ++i) {
+    keep_original(path, input.textures()[textures[i]], images[i]);
+  }
+  write_dumps(path, images, overwrite_if(overwrite));
+}
+
+/// The textures that are images of one file, for each file of the frame. Throws if some did not
+/// arrive.
+std::vector<std::vector<std::size_t>> files_of_frame(const ContainerInput& input) {
+  std::vector<std::vector<std::size_t>> files;
+  const auto& textures = input.textures();
+  for (const std::size_t id : input.arrived()) {
+    const bool joins = !files.empty() && of_one_file(textures[files.back().back()], textures[id]);
+    if (!joins) files.emplace_back();
+    files.back().push_back(id);
+  }
+  for (const auto& file : files) {
+    const auto all = std::ranges::count_if(
+        textures, [&](const auto& one) { return of_one_file(one, textures[file[0]]); });
+    if (static_cast<std::size_t>(all) == file.size() || !textures[file[0]].made_of_files) continue;
+    fail(Exit::bad_input, "{}: frame {} has {} of the {} images of {}", input.path(), input.frame(),
+         file.size(), all, textures[file[0]].file);
+  }
+  return files;
+}
+
 Exit decode(const DecodeOptions& options, const Cli& cli) {
   const FrameRange range = frame_range_from_string(options.frames);
   ContainerInput input(options.input, options.decoder);
   if (!options.files.empty()) input.set_files(*image_kind("x." + options.files));
+  if (options.plain) input.drop_attribute(kKtx2Scheme);
   select_dumps(input, options.volume);
   for (std::size_t i = 0; i < input.textures().size(); ++i) {
     if (input.is_selected(i)) require_format(input.textures()[i], input.path());
@@ -104,20 +138,15 @@ Exit decode(const DecodeOptions& options, const Cli& cli) {
     while (input.next_frame() && input.frame() <= range.last) {
       progress.step();
       const std::uint64_t frame = input.frame();
-      const auto arrived = input.arrived();
-      if (!range.contains(frame) || arrived.empty()) continue;
+      if (!range.contains(frame) || input.arrived().empty()) continue;
+      const auto files_here = files_of_frame(input);
       std::vector<std::function<void()>> tasks;
-      for (const std::size_t id : arrived) {
-        const StoredTexture& texture = input.textures()[id];
-        check_numbered(texture, written[id], frame, input.path());
-        tasks.emplace_back([&, id] {
-          const std::string path =
-              (std::filesystem::path(options.output) / texture.file_name(frame)).string();
-          const DumpInfo info = texture.decoded_info(frame);
-          const auto texels = input.texels(id);
-          check_output(path, inputs, overwrite_if(options.overwrite));
-          if (options.overwrite) keep_original(path, texture, info, texels);
-          write_dump(path, info, texels, overwrite_if(options.overwrite));
+      for (const auto& images : files_here) {
+        const StoredTexture& texture = input.textures()[images.front()];
+        check_numbered(texture, written[images.front()], frame, input.path());
+        tasks.emplace_back([&] {
+          const auto path = std::filesystem::path(options.output) / texture.file_name(frame);
+          write_file_of(input, images, path.string(), inputs, options.overwrite);
           ++files;
         });
       }
@@ -206,6 +235,7 @@ void add_decode(Cli& cli) {
       ->add_option("--files", options->files,
                    "Kind of files to write; default: as encode read, else exr")
       ->allow(one_of({"exr", "dds", "ktx2", "raw"}));
+  command->add_flag("--plain", options->plain, "KTX2 files without supercompression");
   command->add_option("--frames", options->frames, "Only these frames")->type_name("A-B");
   add_overwrite(*command, options->overwrite, "Replace files that are there already");
   add_allow_incomplete(*command, options->allow_incomplete);

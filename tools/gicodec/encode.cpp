@@ -19,11 +19,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -99,29 +96,6 @@ struct Lane {
   }
 };
 
-/// Largest --inactive file: ranges take less, and a device has no end.
-constexpr std::size_t kMaxInactiveBytes = std::size_t{64} << 20;
-
-ProbeSet read_inactive(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string text;
-  while (file && text.size() <= kMaxInactiveBytes) {
-    constexpr std::size_t kStep = std::size_t{1} << 16;
-    const std::size_t before = text.size();
-    text.resize(before + kStep);
-    file.read(&text[before], kStep);
-    text.resize(before + static_cast<std::size_t>(file.gcount()));
-  }
-  if (!file.eof() && text.size() <= kMaxInactiveBytes) {
-    fail(Exit::io, "{}: cannot be read: {}", path, std::strerror(errno));
-  }
-  if (text.size() > kMaxInactiveBytes) {
-    fail(Exit::bad_input, "{}: has more than {} bytes; name probes by ranges a-b", path,
-         kMaxInactiveBytes);
-  }
-  return {text, path};
-}
-
 void set_inactive(Lane& lane, const ProbeSet& inactive, const std::string& path) {
   const std::uint32_t probes = block_count(lane.stored.info.desc);
   if (!inactive.empty() && inactive.last() >= probes) {
@@ -135,6 +109,26 @@ void set_inactive(Lane& lane, const ProbeSet& inactive, const std::string& path)
   check(lane.encoder.set_active(active), lane.stored.name);
 }
 
+std::vector<std::string> listed_names(
+    std::span<const std::pair<const Sequence*, StoredTexture>> inputs) {
+  std::vector<std::string> names;
+  for (const auto& [sequence, stored] : inputs) names.push_back(stored.name);
+  return names;
+}
+
+/// Throws for a texture that no decoder would take.
+void require_size(const StoredTexture& texture, const std::string& path) {
+  const std::uint64_t bytes = texture_bytes(texture.info.desc),
+                      most = DecodeLimits{}.max_texture_bytes;
+  if (bytes <= most) return;
+  const Extent size = extent(texture.info.desc);
+  fail(Exit::bad_input,
+       "{}: {}x{}x{} records of {} take {} bytes, and a texture of a container may have {}; "
+       "\"gicodec crop\" cuts it into parts",
+       path, size.width, size.height, size.slices, record_text(texture.info.desc.record), bytes,
+       most);
+}
+
 /// What flags for all textures mean for each texture.
 struct Roles {
   std::vector<bool> states;
@@ -143,12 +137,9 @@ struct Roles {
 
 Roles roles_of(const EncodeOptions& options,
                std::span<const std::pair<const Sequence*, StoredTexture>> inputs, bool silent) {
-  std::vector<std::string> names;
+  const std::vector<std::string> names = listed_names(inputs);
   std::vector<TextureDesc> descs;
-  for (const auto& [sequence, stored] : inputs) {
-    names.push_back(stored.name);
-    descs.push_back(stored.info.desc);
-  }
+  for (const auto& [sequence, stored] : inputs) descs.push_back(stored.info.desc);
   const auto layout = layout_volume(options.geometry);
   const auto light = are_light(descs, shown_textures(layout.value_or(VolumeDesc{}), descs.size()));
   Roles roles{are_states(descs), max_errors(options.max_error, names, descs, light)};
@@ -159,21 +150,28 @@ Roles roles_of(const EncodeOptions& options,
 
 std::vector<Lane> make_lanes(const EncodeOptions& options, const std::vector<Sequence>& sequences,
                              bool silent) {
-  if (sequences.size() > DecodeLimits{}.max_textures) {
-    fail(Exit::usage, "{} textures are too many for one container; at most {}", sequences.size(),
-         DecodeLimits{}.max_textures);
-  }
   ProbeSet inactive;
-  if (!options.inactive.empty()) inactive = read_inactive(options.inactive);
+  if (!options.inactive.empty()) inactive = read_probe_set(options.inactive);
   bool any_lossy = false;
   std::vector<Lane> lanes;
   auto inputs = inspect_all(options.geometry, sequences);
+  if (inputs.size() > DecodeLimits{}.max_textures) {
+    fail(Exit::usage,
+         "{} textures are too many for one container; at most {}: pack some files each",
+         inputs.size(), DecodeLimits{}.max_textures);
+  }
+  check_error_names(options.max_error, listed_names(inputs));
   const Roles roles = roles_of(options, inputs, silent);
   for (auto& [sequence, stored] : inputs) {
+    require_size(stored, sequence->frames.front().path);
     const bool leaves_out = !inactive.empty() && !roles.states[lanes.size()];
     if (leaves_out) stored.inactive = inactive;
+    if (stored.info.fell_back && !silent) {
+      remark(fmt::format("texture {}: its values are no 10-bit codes; it is kept as {}",
+                         stored.name, record_text(stored.info.desc.record)));
+    }
     if (!stored.dropped.empty() && !silent) {
-      remark(fmt::format("{}: {} not kept", sequence->frames.front().path, stored.dropped));
+      remark(fmt::format("{}: {} not kept", stored.dropped_in, stored.dropped));
     }
     if (is_lossy(options.backend, stored.info.desc.record)) {
       stored.lossy = options.backend.lossy;
@@ -320,9 +318,6 @@ Exit encode(const EncodeOptions& options, const Cli& cli) {
   const auto sequences = group_sequences(options.inputs, options.allow_gaps);
   check_container_output(options, sequences);
   check_names(options.geometry, sequences);
-  std::vector<std::string> names;
-  for (const Sequence& sequence : sequences) names.push_back(sequence.name);
-  check_error_names(options.max_error, names);
   const bool silent = cli.quiet || shares_standard_error(options.output);
   if (const auto question = question_of(sequences); !question.empty() && !silent) remark(question);
   if (const auto question = layout_question(options.geometry, sequences);

@@ -33,7 +33,12 @@ std::vector<Input> by_layout(const GeometryFlags& flags, const VolumeDesc& volum
       fail(Exit::usage, "--layout {} has textures {}, and there are no files of {}", flags.layout,
            texture_names(volume), texture->name);
     }
-    all.emplace_back(&*found, inspect(*found, hints_for(flags, found->name)));
+    auto textures_found = inspect(*found, hints_for(flags, found->name));
+    if (textures_found.size() != 1) {
+      fail(Exit::bad_input, "{}: holds {} images, and --layout {} has one in each file",
+           found->frames.front().path, textures_found.size(), flags.layout);
+    }
+    all.emplace_back(&*found, std::move(textures_found.front()));
   }
   return all;
 }
@@ -71,12 +76,41 @@ std::optional<VolumeGeometry> common_place(Textures textures) {
   return place;
 }
 
-/// A volume of kind probes if possible, else of one group of kind textures.
+/// A volume of kind probes if possible, else of kind textures, a group for each run of one grid.
 Result<VolumeDesc> volume_of(const std::vector<NamedTexture>& textures) {
-  if (is_probes(textures.front().desc)) return probe_volume(textures);
-  TextureGroup group;
-  group.textures = textures;
-  return texture_volume({&group, 1});
+  const auto alike = [&](const NamedTexture& other) {
+    return side_by_side(textures.front().desc, other.desc);
+  };
+  if (is_probes(textures.front().desc) && std::ranges::all_of(textures, alike)) {
+    return probe_volume(textures);
+  }
+  std::vector<TextureGroup> groups;
+  for (const NamedTexture& texture : textures) {
+    const bool joins =
+        !groups.empty() && side_by_side(groups.back().textures.front().desc, texture.desc);
+    if (!joins) groups.emplace_back();
+    groups.back().textures.push_back(texture);
+  }
+  return texture_volume(groups);
+}
+
+/// How many textures make the next volume: all images of a file, or those of one grid that are
+/// alone in their files.
+std::size_t next_volume(Textures textures) {
+  const auto alone = [&](std::size_t i) {
+    return i + 1 == textures.size() || !of_one_file(*textures[i], *textures[i + 1]);
+  };
+  const StoredTexture& first = *textures.front();
+  std::size_t count = 1;
+  if (!alone(0)) {
+    while (count < textures.size() && of_one_file(first, *textures[count])) ++count;
+    return count;
+  }
+  while (count < textures.size() && alone(count) &&
+         side_by_side(textures[count]->info.desc, first.info.desc)) {
+    ++count;
+  }
+  return count;
 }
 
 }  // namespace
@@ -102,14 +136,20 @@ std::string layout_question(const GeometryFlags& flags, const std::vector<Sequen
 
 std::vector<Input> inspect_all(const GeometryFlags& flags, const std::vector<Sequence>& sequences) {
   if (const auto layout = layout_volume(flags)) return by_layout(flags, *layout, sequences);
-  std::vector<Input> all;
+  std::vector<Input> all, images;
   for (const Sequence& sequence : sequences) {
-    StoredTexture stored = inspect(sequence, hints_for(flags, sequence.name));
+    auto textures = inspect(sequence, hints_for(flags, sequence.name));
+    if (textures.size() > 1) {
+      for (StoredTexture& image : textures) images.emplace_back(&sequence, std::move(image));
+      continue;
+    }
+    StoredTexture& stored = textures.front();
     const auto last = std::find_if(all.rbegin(), all.rend(), [&](const auto& other) {
       return side_by_side(other.second.info.desc, stored.info.desc);
     });
     all.insert(last == all.rend() ? all.end() : last.base(), Input(&sequence, std::move(stored)));
   }
+  std::ranges::move(images, std::back_inserter(all));
   return all;
 }
 
@@ -121,17 +161,20 @@ void add_volumes(ContainerDescription& description, const GeometryFlags& flags, 
     return;
   }
   while (!textures.empty()) {
-    const TextureDesc& desc = textures.front()->info.desc;
+    const Textures own = textures.first(next_volume(textures));
+    const StoredTexture& first = *own.front();
+    const bool images = own.size() > 1 && of_one_file(first, *own[1]);
+    const std::string name = images ? first.file : to_string(first.info.desc.grid);
     std::vector<NamedTexture> named;
-    for (const StoredTexture* texture : textures) {
-      if (!side_by_side(texture->info.desc, desc)) break;
+    for (const StoredTexture* texture : own) {
       named.push_back({texture->name, texture->info.desc, {}, {}});
     }
     const std::string where =
-        fmt::format("{}: {} textures of grid {}", output, named.size(), to_string(desc.grid));
-    check(add_volume(description, to_string(desc.grid), take(volume_of(named), where)), where);
-    description.volumes.back().geometry = common_place(textures.first(named.size()));
-    textures = textures.subspan(named.size());
+        images ? fmt::format("{}: the {} images of {}", output, named.size(), name)
+               : fmt::format("{}: {} textures of grid {}", output, named.size(), name);
+    check(add_volume(description, name, take(volume_of(named), where)), where);
+    description.volumes.back().geometry = common_place(own);
+    textures = textures.subspan(own.size());
   }
 }
 

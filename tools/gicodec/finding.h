@@ -13,9 +13,10 @@
 
 namespace gicodec::tools {
 
-/// The finding about one file.
+/// The finding about one file, or one image of it.
 struct Finding {
   std::string texture;
+  std::string of_file;  ///< StoredTexture::file
   std::uint64_t frame = 0;
   std::string file;                  ///< empty: there is none
   std::string missing;               ///< what is missing; empty: nothing

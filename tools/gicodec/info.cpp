@@ -2,6 +2,7 @@
 #include "common/cli.h"
 #include "common/volume_words.h"
 #include "container_report.h"
+#include "info_dump.h"
 
 #include <nlohmann/json.hpp>
 
@@ -13,7 +14,8 @@ namespace gicodec::tools {
 namespace {
 
 constexpr const char* kFooter =
-    "Ratios are against the full textures, guard bands included, and against the records of the\n"
+    "Of a dump it says what is in it, and the command that packs it. Of a container: ratios are\n"
+    "against the full textures, guard bands included, and against the records of the\n"
     "blocks in the packets. Packet bytes count everything: header, block indices, guard bands "
     "that\n"
     "do not follow the rule, payload. Packets are checked, of volumes of any kind. --verbose "
@@ -87,6 +89,10 @@ Totals totals_of(const ContainerInput& input, const std::vector<TextureReport>& 
 }
 
 Exit info(const InfoOptions& options, const Cli& cli) {
+  if (is_dump(options.input)) {
+    print_dump(options.input, options.format == "json");
+    return Exit::ok;
+  }
   ContainerInput input(options.input);
   ContainerReport report{input, {}, {}, options.fps, options.metadata, {}};
   report.textures.resize(input.textures().size());

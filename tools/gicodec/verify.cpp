@@ -56,17 +56,24 @@ struct Report {
   std::vector<Sequence> sequences;  ///< dumps to compare with
   std::vector<Finding> findings;
   std::size_t files = 0, same = 0, good = 0;
+  std::string last_file;  ///< of the last finding, and how its file is so far
+  bool last_same = false, last_good = false;
   std::vector<float> max_error;                     ///< by texture
   std::vector<std::vector<std::uint64_t>> largest;  ///< largest distance, by texture and channel
   std::vector<std::uint64_t> packets;               ///< by texture
   std::set<std::pair<std::string, std::uint64_t>>
       unseen;  ///< texture and frame of files not yet compared
 
+  /// Findings about images of one file follow one another.
   void add(Finding finding) {
-    ++files;
-    if (finding.same()) ++same;
-    if (finding.good()) ++good;
-    if (!finding.file.empty()) unseen.erase({finding.texture, finding.frame});
+    if (finding.file.empty() || finding.file != last_file) {
+      ++files, ++same, ++good;
+      last_file = finding.file;
+      last_same = last_good = true;
+    }
+    if (!finding.same() && std::exchange(last_same, false)) --same;
+    if (!finding.good() && std::exchange(last_good, false)) --good;
+    if (!finding.file.empty()) unseen.erase({finding.of_file, finding.frame});
     if (keep_all || !finding.good()) findings.push_back(std::move(finding));
   }
   /// Notes the largest distances of textures with an error bound.
@@ -94,11 +101,12 @@ Finding compare_frame(std::size_t id, const ContainerInput& input, const Report&
   const StoredTexture& texture = input.textures()[id];
   Finding finding;
   finding.texture = texture.name;
+  finding.of_file = texture.file;
   finding.frame = frame;
   finding.desc = texture.info.desc;
   const auto sequence =
       std::find_if(sequences.begin(), sequences.end(),
-                   [&](const Sequence& candidate) { return candidate.name == texture.name; });
+                   [&](const Sequence& candidate) { return candidate.name == texture.file; });
   const FrameFile* file = sequence == sequences.end() ? nullptr : sequence->find(frame);
   if (file == nullptr) {
     finding.missing = fmt::format("{} was not given", texture.file_name(frame));
@@ -123,13 +131,12 @@ void add_left_over(const std::vector<Sequence>& sequences, Report& report,
   for (const Sequence& sequence : sequences) {
     for (const FrameFile& file : sequence.frames) {
       if (report.unseen.count({sequence.name, file.frame}) == 0) continue;
-      report.add({sequence.name,
-                  file.frame,
-                  file.path,
-                  fmt::format("{} has no such frame of texture {}", path, sequence.name),
-                  {},
-                  {},
-                  {}});
+      Finding finding;
+      finding.texture = finding.of_file = sequence.name;
+      finding.frame = file.frame;
+      finding.file = file.path;
+      finding.missing = fmt::format("{} has no such frame of texture {}", path, sequence.name);
+      report.add(std::move(finding));
     }
   }
 }
@@ -192,7 +199,7 @@ Exit verify(const VerifyOptions& options, const Cli& cli) {
       return file_stem(texture) == sequence.name;
     };
     const auto texture = std::ranges::find_if(input.textures(), named);
-    if (texture != input.textures().end()) sequence.name = texture->name;
+    if (texture != input.textures().end()) sequence.name = texture->file;
   }
   const auto texture_of = [&](const Finding& finding) -> const StoredTexture* {
     for (const StoredTexture& texture : input.textures()) {

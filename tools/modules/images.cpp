@@ -44,6 +44,15 @@ class Reader final : public ImageReader {
   OIIO::TypeDesc type_;
 };
 
+/// How many there are from the first on.
+template <typename Seek>
+int count(Seek&& seek) {
+  constexpr int kMost = 1000;
+  int found = 1;
+  while (found < kMost && seek(found)) ++found;
+  return found;
+}
+
 std::unique_ptr<ImageReader> open(const char* kind, const std::string& path, std::string& why) {
   OIIO::ImageSpec config, spec;
   config.attribute("oiio:UnassociatedAlpha", 1);  // else colour is multiplied by alpha
@@ -57,7 +66,17 @@ std::unique_ptr<ImageReader> open(const char* kind, const std::string& path, std
     why = input->geterror();
     return nullptr;
   }
-  return std::make_unique<Reader>(std::move(input), spec);
+  const int pages = count([&](int page) { return input->seek_subimage(page, 0); }),
+            levels = count([&](int level) { return input->seek_subimage(0, level); });
+  if (!input->seek_subimage(0, 0)) {
+    why = input->geterror();
+    return nullptr;
+  }
+  (void)input->geterror();  // of counting
+  auto reader = std::make_unique<Reader>(std::move(input), spec);
+  reader->head.pages = pages;
+  reader->head.levels = levels;
+  return reader;
 }
 
 std::string encode_png(std::uint32_t width, std::uint32_t height, std::uint32_t channels,

@@ -24,7 +24,8 @@ struct ImageHead {
   bool mixed = false;     ///< channels of different types
   bool deep = false;      ///< any number of samples a texel
   std::string colour_space;
-  std::uint64_t bytes = 0;  ///< of all samples
+  std::uint64_t bytes = 0;    ///< of all samples
+  int pages = 1, levels = 1;  ///< of which the first is read; at most 1,000 are counted
 };
 
 class ImageReader {

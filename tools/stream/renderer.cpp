@@ -51,7 +51,8 @@ double Renderer::draw(const ClientFrame& frame, const ddgi::Camera& camera, std:
   if (scene_ != nullptr) return draw_scene(frame, camera, number);
   for (const ClientVolume& volume : frame.volumes) {
     for (const ClientTexture& texture : volume.textures) {
-      const tools::Dump dump{{texture.desc, {}, {}, {}, {}}, texture.texels};
+      tools::Dump dump{{}, texture.texels};
+      dump.info.desc = texture.desc;
       const auto [path, existing] = pictures_.texture(volume.name, texture.name, number);
       tools::write_preview(path, dump, {}, existing);
     }

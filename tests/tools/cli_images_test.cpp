@@ -1,0 +1,194 @@
+// Files of several images through the command line: they come back, one texture an image.
+#include "dump/dump.h"
+#include "dump/texture_file.h"
+#include "tools/cli_support.h"
+#include "tools/dump_support.h"
+
+#include <gicodec/textures.h>
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace gicodec::tools {
+namespace {
+
+/// All levels and faces of a texture.
+std::vector<Dump> images_of(Format format, const Grid& size, bool volume, std::uint32_t levels,
+                            std::uint32_t faces) {
+  TextureHead head;
+  head.texels = size;
+  head.volume = volume;
+  head.levels = levels;
+  head.faces = faces;
+  std::vector<Dump> images;
+  for (const ImagePlace& place : places_of(head)) {
+    const Grid records = records_of(level_texels(head, place.level), format);
+    const BlockShape block = volume ? BlockShape{4, 4, 4} : BlockShape{8, 8, 1};
+    const TextureDesc desc = map_texture(format, records, block);
+    Dump image{make_info(desc), random_texels(desc, static_cast<std::uint32_t>(images.size()))};
+    if (!images.empty()) image.info.attributes.clear();
+    image.info.place = place;
+    image.info.image = image_name(head, place);
+    image.info.head = images.empty();
+    images.push_back(std::move(image));
+  }
+  return images;
+}
+
+class CliImages : public testing::Test {
+ protected:
+  CliImages() { std::filesystem::create_directories(program_.path("in")); }
+
+  void write(const std::string& name, std::span<const Dump> images) {
+    write_dumps(program_.path("in/" + name), images);
+  }
+  void expect_all_back() {
+    for (const std::string& name : program_.files("in")) {
+      EXPECT_EQ(file_bytes(program_.path("out/" + name)), file_bytes(program_.path("in/" + name)))
+          << name;
+    }
+  }
+  void expect_part(const std::string& text, const std::string& part) {
+    EXPECT_NE(text.find(part), std::string::npos) << text << "lacks " << part;
+  }
+
+  Program program_;
+};
+
+TEST_F(CliImages, LevelsAndFacesComeBack) {
+  auto packed = images_of(Format::R16G16B16A16_SFLOAT, {16, 16, 1}, false, 5, 6);
+  set_attribute(packed[0].info.attributes, {kKtx2Scheme, "string", "Zstandard"});
+  write("packed.ktx2", packed);
+  set_attribute(packed[0].info.attributes, {kKtx2Scheme, "string", "ZLIB"});
+  write("zlib.ktx2", packed);
+  for (const char* ending : {"ktx2", "dds"}) {
+    const auto name = [&](const char* stem) { return fmt::format("{}.{}", stem, ending); };
+    write(name("mips"), images_of(Format::R8G8B8A8_SRGB, {20, 7, 1}, false, 5, 1));
+    write(name("array"), images_of(Format::R16_SFLOAT, {8, 8, 3}, false, 2, 1));
+    write(name("cubes"), images_of(Format::BC1_RGBA_UNORM_BLOCK, {16, 16, 2}, false, 3, 6));
+    write(name("deep"), images_of(Format::R8_UNORM, {8, 4, 6}, true, 4, 1));
+  }
+  std::vector<std::string> command = {"encode", "-o", "x.gic"};
+  for (const char* file : {"packed.ktx2", "zlib.ktx2", "mips.ktx2", "array.ktx2", "deep.ktx2"}) {
+    command.push_back(fmt::format("in/{}", file));
+  }
+  program_.succeed(command);
+  program_.succeed(
+      {"encode", "-o", "y.gic", "in/cubes.ktx2", "in/mips.dds", "in/array.dds", "in/deep.dds"});
+  program_.succeed({"encode", "-o", "z.gic", "in/cubes.dds"});
+  for (const char* container : {"x.gic", "y.gic", "z.gic"}) {
+    program_.succeed({"decode", container, "-o", "out"});
+  }
+  expect_all_back();
+  expect_part(program_
+                  .succeed({"verify", "x.gic", "in/packed.ktx2", "in/zlib.ktx2", "in/mips.ktx2",
+                            "in/array.ktx2", "in/deep.ktx2"})
+                  .out,
+              "5 of 5 files in 1 frame are bit-exact");
+  const std::string info = program_.succeed({"info", "x.gic"}).out;
+  for (const char* texture : {"packed.px", "packed.nz.mip4", "mips.mip4", "deep.mip3"}) {
+    expect_part(info, texture);
+  }
+  program_.succeed({"decode", "--plain", "x.gic", "-o", "plain"});
+  constexpr std::size_t kScheme = 44;
+  EXPECT_EQ(word_at(file_bytes(program_.path("in/packed.ktx2")), kScheme), 2U);
+  EXPECT_EQ(word_at(file_bytes(program_.path("plain/packed.ktx2")), kScheme), 0U);
+  program_.succeed({"compare", "--texels-only", "in/packed.ktx2", "plain/packed.ktx2"});
+}
+
+TEST_F(CliImages, SequencesOfThem) {
+  for (int frame = 0; frame < 3; ++frame) {
+    auto images = images_of(Format::R16G16B16A16_SFLOAT, {8, 8, 1}, false, 2, 6);
+    images[3].texels[0] = static_cast<std::byte>(frame);
+    set_attribute(images[0].info.attributes, time_attribute(frame));
+    write(fmt::format("sky.{:04}.ktx2", frame), images);
+  }
+  program_.succeed({"encode", "-o", "x.gic", "in"});
+  expect_part(program_.succeed({"verify", "x.gic", "in"}).out,
+              "3 of 3 files in 3 frames are bit-exact");
+  program_.succeed({"decode", "x.gic", "-o", "out"});
+  expect_all_back();
+  // Another image of one frame: that file differs, and it alone.
+  auto images = read_dumps(program_.path("in/sky.0001.ktx2"));
+  images[7].texels[5] ^= std::byte{1};
+  write_dumps(program_.path("in/sky.0001.ktx2"), images, Existing::replace);
+  const auto outcome = program_.run({"verify", "x.gic", "in"});
+  EXPECT_EQ(outcome.exit, static_cast<int>(Exit::different));
+  expect_part(outcome.out, "2 of 3 files in 3 frames are bit-exact: NOT VERIFIED");
+  // A frame with other images.
+  write_dumps(program_.path("in/sky.0002.ktx2"),
+              images_of(Format::R16G16B16A16_SFLOAT, {8, 8, 1}, false, 1, 6), Existing::replace);
+  program_.expect_failure(Exit::bad_input, {"encode", "-o", "y.gic", "in"},
+                          {"sky.0002.ktx2: has 6 images, and ", "sky.0000.ktx2 has 12"});
+}
+
+TEST_F(CliImages, LayersComeBack) {
+  const TextureDesc color = map_texture(Format::R16G16B16A16_SFLOAT, {9, 7, 1}, {8, 8, 1}),
+                    depth = map_texture(Format::R32_SFLOAT, {9, 7, 1}, {8, 8, 1});
+  std::vector<Dump> images = {{make_info(color), random_texels(color, 1)},
+                              {make_info(depth), random_texels(depth, 2)}};
+  images[0].info.attributes = {{"note", "string", "kept"}};
+  images[1].info.attributes.clear();
+  images[1].info.channels.names[0] = "depth.Z";
+  images[1].info.head = false;
+  write("a.exr", images);
+  program_.succeed({"encode", "-o", "x.gic", "in"});
+  program_.succeed({"verify", "x.gic", "in"});
+  program_.succeed({"decode", "x.gic", "-o", "out"});
+  expect_all_back();
+  expect_part(program_.succeed({"compare", "in/a.exr", "out/a.exr"}).out,
+              "depth.Z of in/a.exr and out/a.exr are identical");
+  program_.succeed({"decode", "x.gic", "--overwrite", "-o", "in"});
+  // A box of both, and what it lacks.
+  program_.succeed({"crop", "--origin", "0,0,0", "--size", "1x1x1", "-o", "small", "in"});
+  EXPECT_EQ(read_dumps(program_.path("small/a.exr")).size(), 2U);
+  // Channels that a flag leaves out are named before anything is written, and keep the original.
+  const std::vector<std::string> left = {"encode",          "-o", "y.gic", "--channels",
+                                         "R=R,G=G,B=B,A=A", "in"};
+  expect_part(program_.succeed(left).err, "in/a.exr: channel depth.Z not kept");
+  expect_part(program_.succeed({"verify", "y.gic", "in"}).out,
+              "channel depth.Z of the files not kept");
+  program_.expect_failure(Exit::io, {"decode", "y.gic", "--overwrite", "-o", "in"},
+                          {"may be the original", "channel depth.Z"});
+}
+
+TEST_F(CliImages, InfoSaysWhatAFileHolds) {
+  write("sky box.ktx2", images_of(Format::R16_SFLOAT, {8, 8, 1}, false, 2, 6));
+  const std::string text = program_.succeed({"info", "in/sky box.ktx2"}).out;
+  for (const char* part : {"12 images", "px: R16_SFLOAT, 8x8", "nz.mip1: R16_SFLOAT, 4x4",
+                           "gicodec encode -o 'sky box.gic' 'in/sky box.ktx2' packs it"}) {
+    expect_part(text, part);
+  }
+  expect_part(program_.succeed({"info", "--format", "json", "in/sky box.ktx2"}).out,
+              "\"name\": \"nz.mip1\"");
+}
+
+TEST_F(CliImages, RawFilesWithoutASidecar) {
+  write_bytes(program_.path("in/a.raw"), std::vector<std::byte>(8 * 4 * 2 * 4));
+  program_.expect_failure(Exit::bad_input, {"encode", "-o", "x.gic", "in/a.raw"},
+                          {"has no sidecar", "--vk-format and --extent do without one"});
+  program_.succeed(
+      {"encode", "-o", "x.gic", "--vk-format", "R8G8B8A8_SRGB", "--extent", "8x4x2", "in/a.raw"});
+  program_.succeed({"decode", "x.gic", "-o", "out"});
+  expect_all_back();
+  EXPECT_EQ(program_.files("out"), std::vector<std::string>{"a.raw"});
+}
+
+TEST_F(CliImages, TexturesTooLargeForAContainer) {
+  const Dump small = images_of(Format::R16G16B16A16_SFLOAT, {8, 8, 1}, false, 1, 1)[0];
+  write("a.dds", {&small, 1});
+  auto bytes = file_bytes(program_.path("in/a.dds"));
+  set_word(bytes, 12, 16384);
+  set_word(bytes, 16, 16384);
+  write_bytes(program_.path("in/a.dds"), bytes);
+  std::filesystem::resize_file(program_.path("in/a.dds"), 148 + (std::uint64_t{2} << 30));
+  program_.expect_failure(
+      Exit::bad_input, {"encode", "-o", "x.gic", "in/a.dds"},
+      {"in/a.dds: 16384x16384x1 records of R16G16B16A16_SFLOAT take 2147483648", "gicodec crop"});
+}
+
+}  // namespace
+}  // namespace gicodec::tools

@@ -1,0 +1,49 @@
+// An EXR file's header as its bytes say it, before OpenEXR allocates by its sizes.
+#pragma once
+
+#include "dump/sample.h"
+
+#include <gicodec/volume.h>
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace gicodec::tools {
+
+struct ExrAttribute {
+  std::string name, type, bytes;
+};
+
+struct ExrChannel {
+  std::string name;
+  SampleType type{};
+  bool linear = false;  ///< pLinear
+  std::uint32_t x_sampling = 1, y_sampling = 1;
+};
+
+struct ExrPart {
+  std::string name;  ///< empty in files of one part that do not name it
+  std::vector<ExrAttribute> attributes;
+  std::vector<ExrChannel> channels;
+  std::int32_t x = 0, y = 0;  ///< where the data window begins
+  std::uint32_t width = 0, height = 0;
+  bool tiled = false;
+  std::uint32_t levels = 1;  ///< mip levels
+  bool round_up = false;     ///< sizes of levels
+
+  /// Width and height of a level; z = 1.
+  [[nodiscard]] Grid level_size(std::uint32_t level) const noexcept;
+};
+
+/// False where the bytes are no value of a type that OpenEXR knows: it would read another header
+/// than the one that they stand in, or allocate by a size in them.
+[[nodiscard]] bool is_sound_exr_value(std::string_view type, std::string_view bytes) noexcept;
+
+/// Throws Error for a file that is no EXR, is damaged, deep or ripmapped, or claims more than its
+/// bytes can hold.
+[[nodiscard]] std::vector<ExrPart> read_exr_header(const std::string& path);
+
+}  // namespace gicodec::tools

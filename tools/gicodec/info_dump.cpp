@@ -1,0 +1,85 @@
+#include "info_dump.h"
+
+#include "common/cli.h"
+#include "common/volume_words.h"
+#include "dump/dump.h"
+#include "dump/error.h"
+#include "dump/text.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+
+namespace gicodec::tools {
+namespace {
+
+/// A word of a command line, quoted where a shell would split it.
+std::string quoted(const std::string& word) {
+  const bool plain = word.find_first_of(" \t\n'\"\\$&;|<>()*?[]#~`!") == std::string::npos;
+  if (plain && !word.empty()) return word;
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? "'\\''" : std::string(1, c);
+  return text + "'";
+}
+
+std::string command_for(const std::string& path) {
+  const std::string stem = std::filesystem::path(path).stem().string();
+  return fmt::format("gicodec encode -o {} {}", quoted(stem + ".gic"), quoted(path));
+}
+
+/// "8x8x1 blocks", or the grid of probes.
+std::string blocks_text(const TextureDesc& desc) {
+  if (is_probes(desc)) {
+    return fmt::format("{} probes of {}x{} texels and {} of guard band", to_string(desc.grid),
+                       desc.block.x, desc.block.y, desc.guard_band);
+  }
+  return fmt::format("blocks of {}x{}x{}", desc.block.x, desc.block.y, desc.block.z);
+}
+
+}  // namespace
+
+bool is_dump(const std::string& path) {
+  return path != "-" && !is_container_file(path) && std::filesystem::path(path).has_extension() &&
+         image_kind(path).has_value();
+}
+
+void print_dump(const std::string& path, bool json) {
+  const Hints hints = settle_formats({&path, 1}, {});
+  const std::vector<DumpInfo> images = read_dump_infos(path, hints);
+  if (json) {
+    nlohmann::ordered_json all = {{"dump", path}, {"images", nlohmann::ordered_json::array()}};
+    for (const DumpInfo& image : images) {
+      const Extent size = extent(image.desc);
+      nlohmann::ordered_json one = {{"name", image.image},
+                                    {"format", record_text(image.desc.record)},
+                                    {"records", {size.width, size.height, size.slices}},
+                                    {"blocks", blocks_text(image.desc)}};
+      for (const Attribute& attribute : image.attributes) {
+        one["attributes"][attribute.name] = attribute.value;
+      }
+      one["not_kept"] = image.lost;
+      all["images"].push_back(std::move(one));
+    }
+    all["command"] = command_for(path);
+    print_json(all);
+    return;
+  }
+  print("{}: {} image{}\n", path, images.size(), images.size() == 1 ? "" : "s");
+  for (const DumpInfo& image : images) {
+    const Extent size = extent(image.desc);
+    print("  {}: {}, {}x{}{}, {}\n", image_words(image), record_text(image.desc.record), size.width,
+          size.height, size.slices == 1 ? "" : fmt::format(" in {} slices", size.slices),
+          blocks_text(image.desc));
+    for (const std::string& what : image.lost) print("    not kept: {}\n", what);
+    for (const Attribute& attribute : image.attributes) {
+      constexpr std::size_t kShown = 60;
+      const std::string& value = attribute.value;
+      print("    {}: {}{}\n", attribute.name, value.substr(0, kShown),
+            value.size() > kShown ? fmt::format("... ({} bytes)", value.size()) : "");
+    }
+  }
+  print("{} packs it\n", command_for(path));
+}
+
+}  // namespace gicodec::tools
