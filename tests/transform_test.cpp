@@ -169,7 +169,8 @@ RC_GTEST_PROP(BytePlanes, AnyRecordWithAndWithoutReference, (std::uint64_t seed)
 }
 
 TEST(BytePlanes, NoTexelsNeedNoMemory) {
-  for (const auto& info : test::distinct_formats()) EXPECT_EQ(broken_byte_planes(info.record, {}, {}), "");
+  for (const auto& info : test::distinct_formats())
+    EXPECT_EQ(broken_byte_planes(info.record, {}, {}), "");
 }
 
 TEST(BytePlanes, NoDifferenceIsAllZero) {

@@ -1,6 +1,6 @@
 // Payloads of textures of all records, shapes and presences (round_trip.h).
-#include "distinct_formats.h"
 #include "native/round_trip.h"
+#include "distinct_formats.h"
 #include "shapes.h"
 
 #include <gtest/gtest.h>

@@ -28,7 +28,8 @@ inline constexpr const char* kLossyAttribute = "gicodec:lossy";
 
 struct StoredTexture {
   std::string name;
-  std::string file;  ///< its files' name; textures of one file are its images, info.place says which
+  std::string
+      file;  ///< its files' name; textures of one file are its images, info.place says which
   unsigned digits = 4;
   std::string extension = "exr";
   std::string separator = ".";
@@ -61,8 +62,8 @@ struct StoredTexture {
 [[nodiscard]] std::string written_extension(const Sequence& sequence);
 
 /// Reads the headers of all files of a sequence: a texture for each image of a file. Colours are
-/// 10-bit codes if nothing says what they are and all of their values are. Throws if a file does not
-/// fit the first.
+/// 10-bit codes if nothing says what they are and all of their values are. Throws if a file does
+/// not fit the first.
 [[nodiscard]] std::vector<StoredTexture> inspect(const Sequence& sequence, Hints hints);
 /// True if both are images of the same files.
 [[nodiscard]] bool of_one_file(const StoredTexture& a, const StoredTexture& b);
