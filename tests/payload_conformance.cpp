@@ -193,9 +193,10 @@ std::string check_volume(const VolumeDesc& volume, const Backend& backend, Gener
         return "other contents of " + textures[t]->name;
       }
       const auto [group, first] = group_of(volume, t);
-      const auto changed = decoder->changed(t), first_changed = decoder->changed(first);
-      const bool alike =
-          std::equal(changed.begin(), changed.end(), first_changed.begin(), first_changed.end());
+      // Not std::ranges::equal(), which the libc++ of Emscripten lacks.
+      const auto changed = decoder->changed(t), other = decoder->changed(first);
+      bool alike = changed.size() == other.size();
+      for (std::size_t i = 0; alike && i < other.size(); ++i) alike = changed[i] == other[i];
       if (group->bundled && !alike) {
         return "blocks of " + textures[t]->name + " travel alone";
       }

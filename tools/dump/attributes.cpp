@@ -240,7 +240,8 @@ void set_attribute(Attributes& attributes, Attribute attribute) {
 }
 
 std::string text_of_name(std::string_view name) {
-  return is_utf8(name) && !name.starts_with("0x") ? std::string(name) : "0x" + to_hex(name);
+  if (is_utf8(name) && !name.starts_with("0x")) return std::string(name);
+  return fmt::format("0x{}", to_hex(name));
 }
 
 std::string name_of_text(const std::string& text) {
@@ -255,12 +256,12 @@ void read_attributes(const ExrPart& part, bool several, DumpInfo& info) {
     const std::string& name = attribute.name;
     if (contains(kImplied, name) || (several && contains(kImpliedOfParts, name))) continue;
     if (!seen.insert(name).second || is_head_field(name)) {
-      info.lost.push_back((is_head_field(name) ? "attribute " : "a second attribute ") +
-                          text_of_name(name));
+      info.lost.push_back(fmt::format("{}attribute {}", is_head_field(name) ? "" : "a second ",
+                                      text_of_name(name)));
       continue;
     }
     if (name == "compression" && attribute.bytes.size() == 1 && attribute.bytes[0] > 4) {
-      info.lost.push_back("its compression, which loses bits (ZIP comes back)");
+      info.lost.emplace_back("its compression, which loses bits (ZIP comes back)");
     }
     // Attributes with the value of a default header follow.
     const auto same = usual.find(name);
@@ -276,7 +277,9 @@ void read_attributes(const ExrPart& part, bool several, DumpInfo& info) {
   }
   std::string linear;
   for (const ExrChannel& channel : part.channels) {
-    if (channel.linear) linear += (linear.empty() ? "" : "\n") + text_of_name(channel.name);
+    if (!channel.linear) continue;
+    if (!linear.empty()) linear += '\n';
+    linear += text_of_name(channel.name);
   }
   if (!linear.empty()) set_attribute(info.attributes, {kExrLinear, "string", linear});
 }

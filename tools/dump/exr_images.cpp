@@ -131,7 +131,7 @@ class Images {
       const std::string name = text_of_name(channel.name);
       if (!image.info.head || std::ranges::find(wanted, name, &FoundChannel::name) != wanted.end())
         continue;
-      image.info.lost.push_back("channel " + name);
+      image.info.lost.push_back(fmt::format("channel {}", name));
     }
     return image;
   }
@@ -200,7 +200,7 @@ class Images {
     std::erase_if(channels, is_taken);
     if (hints_.channels.empty()) return channels;
     for (const ExrChannel& channel : channels) {
-      images_.front().info.lost.push_back("channel " + text_of_name(channel.name));
+      images_.front().info.lost.push_back(fmt::format("channel {}", text_of_name(channel.name)));
     }
     return {};
   }
@@ -263,7 +263,10 @@ class Images {
       if (!single.empty() && images_.size() > part.levels) words.push_back(single);
       if (info.place.level > 0) words.push_back(fmt::format("mip{}", info.place.level));
       std::string name;
-      for (const std::string& word : words) name += (name.empty() ? "" : ".") + text_of_name(word);
+      for (const std::string& word : words) {
+        if (!name.empty()) name += '.';
+        name += text_of_name(word);
+      }
       const std::string first = name;
       for (int again = 2; !taken.insert(name).second; ++again) {
         name = fmt::format("{}#{}", first, again);
