@@ -122,6 +122,7 @@ class HeaderWalk {
   void finish_part() {
     if (part_.width == 0) fail(Exit::bad_input, "{}: its EXR header lacks dataWindow", path_);
     if (part_.channels.empty()) fail(Exit::bad_input, "{}: has no channels", path_);
+    if (!part_.tiled) part_.levels = 1;
     if (part_.levels > 1) {
       const std::uint32_t side = std::max(part_.width, part_.height);
       part_.levels = static_cast<std::uint32_t>(part_.round_up ? std::bit_width(side - 1) + 1
@@ -232,7 +233,7 @@ class HeaderWalk {
         static_cast<std::uint64_t>(width * height) > kMaxImageBytes / 4) {
       fail(Exit::bad_input, "{}: an image of {}x{} texels is not supported", path_, width, height);
     }
-    constexpr std::int32_t kFar = 1 << 29;  // OpenEXR's own limit is near.
+    constexpr std::int32_t kFar = 1 << 24;  // Attribute exr:origin holds these exactly.
     if (std::abs(std::int64_t{box[0]}) > kFar || std::abs(std::int64_t{box[1]}) > kFar) {
       fail(Exit::bad_input, "{}: a data window from ({}, {}) on is not supported", path_, box[0],
            box[1]);

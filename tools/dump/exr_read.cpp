@@ -96,6 +96,15 @@ Imf::FrameBuffer frame_buffer(const ExrImage& image, const Imath::Box2i& window,
   return target;
 }
 
+/// Throws unless OpenEXR reads as many texels as there is room for.
+void require_window(const Imath::Box2i& window, const Grid& size, const std::string& path) {
+  const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1,
+                     height = std::int64_t{window.max.y} - window.min.y + 1;
+  if (width == size.x && height == size.y) return;
+  fail(Exit::bad_input, "{}: its data window is damaged: {}x{} texels against {}x{}", path, width,
+       height, size.x, size.y);
+}
+
 std::vector<std::byte> read_texels(Imf::MultiPartInputFile& file, const ExrPart& part,
                                    const ExrImage& image, const std::string& path) {
   const auto place = image.info.place;
@@ -103,11 +112,14 @@ std::vector<std::byte> read_texels(Imf::MultiPartInputFile& file, const ExrPart&
   const auto number = static_cast<int>(place.part), level = static_cast<int>(place.level);
   if (part.tiled) {
     Imf::TiledInputPart tiles(file, number);
-    tiles.setFrameBuffer(frame_buffer(image, tiles.dataWindowForLevel(level), planes));
+    const Imath::Box2i window = tiles.dataWindowForLevel(level);
+    require_window(window, part.level_size(place.level), path);
+    tiles.setFrameBuffer(frame_buffer(image, window, planes));
     tiles.readTiles(0, tiles.numXTiles(level) - 1, 0, tiles.numYTiles(level) - 1, level);
   } else {
     Imf::InputPart lines(file, number);
     const Imath::Box2i window = lines.header().dataWindow();
+    require_window(window, part.level_size(0), path);
     lines.setFrameBuffer(frame_buffer(image, window, planes));
     lines.readPixels(window.min.y, window.max.y);
   }

@@ -104,12 +104,29 @@ struct Part {
   bool tiled = false;
 };
 
-V2i v2i_of(const Attributes& attributes, const char* name, V2i otherwise) {
-  const Attribute* const found = find_attribute(attributes, name);
-  if (found == nullptr) return otherwise;
+/// Two whole numbers of an attribute, from `least` to `most`.
+V2i v2i_of(const Attributes& attributes, const char* name, int least, int most, V2i otherwise) {
+  if (find_attribute(attributes, name) == nullptr) return otherwise;
   const auto values = find_floats(attributes, name, 2);
-  if (!values) throw std::invalid_argument(fmt::format("attribute {} is no pair of numbers", name));
+  const auto fits = [&](float value) {
+    return value >= static_cast<float>(least) && value <= static_cast<float>(most);
+  };
+  if (!values || !fits((*values)[0]) || !fits((*values)[1])) {
+    throw std::invalid_argument(
+        fmt::format("attribute {} is no pair of numbers from {} to {}", name, least, most));
+  }
   return {static_cast<int>((*values)[0]), static_cast<int>((*values)[1])};
+}
+
+/// Where a part's data window begins.
+V2i origin_of(const DumpInfo& info) {
+  constexpr int kFar = 1 << 24;  // floats hold all whole numbers up to it
+  return v2i_of(info.attributes, kExrOrigin, -kFar, kFar, {0, 0});
+}
+
+V2i sampling_of(const DumpInfo& info) {
+  constexpr int kMost = 1024;
+  return v2i_of(info.attributes, kExrSampling, 1, kMost, {1, 1});
 }
 
 bool is_linear(const Attributes& attributes, const std::string& channel) {
@@ -121,11 +138,13 @@ bool is_linear(const Attributes& attributes, const std::string& channel) {
 Part part_of(std::span<const Dump> images, const std::string& path) {
   const DumpInfo& first = images.front().info;
   const Extent size = image_extent(first.desc);
-  const V2i sampling = v2i_of(first.attributes, kExrSampling, {1, 1});
-  const V2i origin = v2i_of(first.attributes, kExrOrigin, {0, 0});
-  Part part{Imf::Header(static_cast<int>(size.width) * sampling.x,
-                        static_cast<int>(size.height) * sampling.y),
-            images};
+  const V2i sampling = sampling_of(first), origin = origin_of(first);
+  const std::int64_t width = std::int64_t{sampling.x} * static_cast<std::int64_t>(size.width),
+                     height = std::int64_t{sampling.y} * static_cast<std::int64_t>(size.height);
+  if (width > kMaxImageSide || height > kMaxImageSide) {
+    throw std::invalid_argument(fmt::format("{}x{} texels are too many", width, height));
+  }
+  Part part{Imf::Header(static_cast<int>(width), static_cast<int>(height)), images};
   part.header.dataWindow().min += origin;
   part.header.dataWindow().max += origin;
   set_attributes(part.header, first.attributes, path);
@@ -136,7 +155,7 @@ Part part_of(std::span<const Dump> images, const std::string& path) {
   for (const Dump& image : images) {
     if (image.info.place.level > 0) continue;
     const Record& record = image.info.desc.record;
-    const V2i steps = v2i_of(image.info.attributes, kExrSampling, {1, 1});
+    const V2i steps = sampling_of(image.info);
     for (std::size_t i = 0; i < record.count; ++i) {
       if (!has_channel(image.info.channels, record.components[i])) {
         if (letter(record.components[i]) == 'A') {
@@ -153,6 +172,24 @@ Part part_of(std::span<const Dump> images, const std::string& path) {
   return part;
 }
 
+/// Throws unless an image has as many samples as its channels have in the window.
+void require_samples(const DumpInfo& info, const Imath::Box2i& window, const V2i& steps,
+                     std::uint32_t level) {
+  const auto samples = [](int first, int last, int step) {
+    const auto below = [step](std::int64_t at) {
+      return at >= 0 ? at / step : -((-at + step - 1) / step);
+    };
+    return below(last) - below(std::int64_t{first} - 1);
+  };
+  const Extent size = image_extent(info.desc);
+  if (samples(window.min.x, window.max.x, steps.x) == static_cast<std::int64_t>(size.width) &&
+      samples(window.min.y, window.max.y, steps.y) == static_cast<std::int64_t>(size.height)) {
+    return;
+  }
+  throw std::invalid_argument(
+      fmt::format("{} has another size than level {} of its part", image_words(info), level));
+}
+
 /// The samples of a level's images, and where they are.
 Imf::FrameBuffer frame_buffer(const Part& part, std::uint32_t level, const Imath::Box2i& window,
                               std::vector<std::vector<char>>& planes) {
@@ -162,7 +199,8 @@ Imf::FrameBuffer frame_buffer(const Part& part, std::uint32_t level, const Imath
     if (info.place.level != level) continue;
     const Record& record = info.desc.record;
     const std::size_t width = image_extent(info.desc).width;
-    const V2i steps = v2i_of(info.attributes, kExrSampling, {1, 1});
+    const V2i steps = sampling_of(info);
+    require_samples(info, window, steps, level);
     for (std::size_t i = 0; i < record.count; ++i) {
       if (!has_channel(info.channels, record.components[i])) continue;
       const SampleType type = info.channels.types[i];
@@ -179,6 +217,9 @@ Imf::FrameBuffer frame_buffer(const Part& part, std::uint32_t level, const Imath
 /// `file`: an OutputFile or OutputPart.
 template <typename File>
 void write_lines(File& file, const Part& part) {
+  for (const Dump& image : part.images) {
+    if (image.info.place.level > 0) throw std::invalid_argument("only tiles have levels");
+  }
   const Imath::Box2i window = part.header.dataWindow();
   std::vector<std::vector<char>> planes;
   file.setFrameBuffer(frame_buffer(part, 0, window, planes));
@@ -198,14 +239,6 @@ void write_tiles(File& file, const Part& part, const std::string& path) {
   for (int level = 0; level < levels; ++level) {
     std::vector<std::vector<char>> planes;
     const Imath::Box2i window = file.dataWindowForLevel(level);
-    for (const Dump& image : part.images) {
-      const V2i steps = v2i_of(image.info.attributes, kExrSampling, {1, 1});
-      const Extent size = image_extent(image.info.desc);
-      if (static_cast<int>(image.info.place.level) != level || steps != V2i(1, 1)) continue;
-      const bool fits = static_cast<int>(size.width) == window.max.x - window.min.x + 1 &&
-                        static_cast<int>(size.height) == window.max.y - window.min.y + 1;
-      if (!fits) fail(Exit::bad_input, "{}: level {} has another size", path, level);
-    }
     file.setFrameBuffer(frame_buffer(part, static_cast<std::uint32_t>(level), window, planes));
     file.writeTiles(0, file.numXTiles(level) - 1, 0, file.numYTiles(level) - 1, level);
   }
