@@ -40,19 +40,6 @@ constexpr std::array<Typed, 10> kTyped{{{"compression", "compression"},
                                         {"type", "string"},
                                         {"chunkCount", "int"}}};
 
-// Types that OpenEXR may make objects of: their bytes hold no sizes for which it allocates memory.
-// Others pass as bytes.
-constexpr std::array<std::string_view, 25> kTypes = {
-    "box2f",       "box2i",        "chromaticities",
-    "compression", "double",       "envmap",
-    "float",       "int",          "keycode",
-    "lineOrder",   "m33d",         "m33f",
-    "m44d",        "m44f",         "rational",
-    "string",      "stringvector", "tiledesc",
-    "timecode",    "v2d",          "v2f",
-    "v2i",         "v3d",          "v3f",
-    "v3i"};
-
 constexpr std::size_t kMaxName = 255;
 
 template <typename Range>
@@ -293,9 +280,10 @@ bool exr_has_attribute(const Attribute& attribute) {
          !type.empty() && type.size() <= kMaxName && type.find('\0') == std::string::npos;
 }
 
-/// An attribute's object. Of a type that holds sizes it is one that only carries bytes.
-static std::unique_ptr<Imf::Attribute> object_of(const std::string& type) {
-  if (contains(kTypes, type)) {
+/// An attribute's object: what OpenEXR asks for is of its type, all else only carries bytes, which
+/// it would otherwise read and write as others.
+static std::unique_ptr<Imf::Attribute> object_of(const std::string& name, const std::string& type) {
+  if (std::ranges::find(kTyped, name, &Typed::name) != kTyped.end()) {
     return std::unique_ptr<Imf::Attribute>(Imf::Attribute::newAttribute(type.c_str()));
   }
   return std::make_unique<Imf::OpaqueAttribute>(type.c_str());
@@ -308,14 +296,15 @@ void set_attributes(Imf::Header& header, const Attributes& attributes, const std
       if (!exr_has_attribute(attribute)) throw std::invalid_argument("unknown name or type");
       const std::string type = name_of_text(attribute.type);
       const std::string bytes = from_text(type, attribute.value);
-      if (!contains(kTypes, type) && !is_sound_exr_value(type, bytes)) {
+      if (!is_sound_exr_value(type, bytes)) {
         throw std::invalid_argument("not a value of this type");
       }
-      const std::unique_ptr<Imf::Attribute> value = object_of(type);
+      const std::string name = name_of_text(attribute.name);
+      const std::unique_ptr<Imf::Attribute> value = object_of(name, type);
       MemoryIn in(bytes);
       value->readValueFrom(in, static_cast<int>(bytes.size()), Imf::EXR_VERSION);
       if (!in.at_end()) throw std::invalid_argument("more bytes than the type has");
-      header.insert(name_of_text(attribute.name), *value);
+      header.insert(name, *value);
     } catch (const std::exception& error) {
       fail(Exit::bad_input, "{}: attribute {} of type {} cannot be written: {}", path,
            attribute.name, attribute.type, error.what());

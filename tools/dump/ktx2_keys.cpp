@@ -47,8 +47,8 @@ Attributes read_ktx2_keys(std::span<const std::byte> bytes, const std::string& p
     bytes = bytes.subspan(std::min(bytes.size(), padded(4 + size)));
   }
   std::ranges::stable_sort(attributes, {}, &Attribute::name);
-  const auto twice = std::ranges::unique(attributes, {}, &Attribute::name);
-  attributes.erase(twice.begin(), twice.end());
+  const auto same = [](const Attribute& a, const Attribute& b) { return a.name == b.name; };
+  attributes.erase(std::unique(attributes.begin(), attributes.end(), same), attributes.end());
   return attributes;
 }
 

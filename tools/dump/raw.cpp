@@ -86,7 +86,7 @@ class Sidecar {
       fail(Exit::bad_input, "{}: \"extent\" is no list of two or three sides in texels", path_);
     }
     head.texels = {sides[0], sides[1], sides.size() > 2 ? sides[2] : 1};
-    head.volume = sides.size() > 2;
+    head.volume = head.texels.z > 1;
   }
   void add_attributes(Attributes& attributes, const Json& value) {
     if (!value.is_object() || value.size() > kMaxAttributes) {
