@@ -23,19 +23,7 @@ std::vector<Dump> images_of(Format format, const Grid& size, bool volume, std::u
   head.volume = volume;
   head.levels = levels;
   head.faces = faces;
-  std::vector<Dump> images;
-  for (const ImagePlace& place : places_of(head)) {
-    const Grid records = records_of(level_texels(head, place.level), format);
-    const BlockShape block = volume ? BlockShape{4, 4, 4} : BlockShape{8, 8, 1};
-    const TextureDesc desc = map_texture(format, records, block);
-    Dump image{make_info(desc), random_texels(desc, static_cast<std::uint32_t>(images.size()))};
-    if (!images.empty()) image.info.attributes.clear();
-    image.info.place = place;
-    image.info.image = image_name(head, place);
-    image.info.head = images.empty();
-    images.push_back(std::move(image));
-  }
-  return images;
+  return random_images(format, head);
 }
 
 class CliImages : public testing::Test {

@@ -1,5 +1,7 @@
 #include "tools/dump_support.h"
 
+#include <gicodec/textures.h>
+
 #include <unistd.h>
 
 #include <algorithm>
@@ -42,6 +44,22 @@ std::vector<std::byte> random_texels(const TextureDesc& desc, std::uint32_t seed
 
 Dump random_dump(const TextureDesc& desc, std::uint32_t seed) {
   return {make_info(desc), random_texels(desc, seed)};
+}
+
+std::vector<Dump> random_images(Format format, const TextureHead& head) {
+  std::vector<Dump> images;
+  for (const ImagePlace& place : places_of(head)) {
+    const Grid records = records_of(level_texels(head, place.level), format);
+    const BlockShape block = head.volume ? BlockShape{4, 4, 4} : BlockShape{8, 8, 1};
+    const TextureDesc desc = map_texture(format, records, block);
+    Dump image{make_info(desc), random_texels(desc, static_cast<std::uint32_t>(images.size()))};
+    image.info.head = images.empty();
+    if (!image.info.head) image.info.attributes.clear();
+    image.info.place = place;
+    image.info.image = image_name(head, place);
+    images.push_back(std::move(image));
+  }
+  return images;
 }
 
 Dump without_alpha(Dump dump) {

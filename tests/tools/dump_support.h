@@ -3,6 +3,7 @@
 
 #include "dump/dump.h"
 #include "dump/error.h"
+#include "dump/texture_file.h"
 
 #include <gicodec/probes.h>
 
@@ -35,6 +36,8 @@ class TemporaryDirectory {
 /// A dump of random texels with the attributes of make_info(). Alpha is zero if it has no channel.
 [[nodiscard]] Dump random_dump(const TextureDesc& desc, std::uint32_t seed);
 [[nodiscard]] Dump without_alpha(Dump dump);
+/// The same of all levels and faces of a texture; the first has the attributes.
+[[nodiscard]] std::vector<Dump> random_images(Format format, const TextureHead& head);
 
 [[nodiscard]] std::vector<std::byte> file_bytes(const std::string& path);
 void write_bytes(const std::string& path, std::span<const std::byte> bytes);

@@ -25,20 +25,9 @@ struct Sent {
 
 /// All images of a texture; `packed`: by ZLIB.
 Sent texture_of(const std::string& name, Format format, const TextureHead& head, bool packed) {
-  Sent sent{name, {}, head};
-  for (const ImagePlace& place : places_of(head)) {
-    const Grid records = records_of(level_texels(head, place.level), format);
-    const BlockShape block = head.volume ? BlockShape{4, 4, 4} : BlockShape{8, 8, 1};
-    const TextureDesc desc = map_texture(format, records, block);
-    Dump image{make_info(desc), random_texels(desc, place.level * 7 + place.face)};
-    image.info.head = sent.images.empty();
-    if (!image.info.head) image.info.attributes.clear();
-    if (image.info.head && packed) {
-      set_attribute(image.info.attributes, {kKtx2Scheme, "string", "ZLIB"});
-    }
-    image.info.place = place;
-    image.info.image = image_name(head, place);
-    sent.images.push_back(std::move(image));
+  Sent sent{name, random_images(format, head), head};
+  if (packed) {
+    set_attribute(sent.images[0].info.attributes, {kKtx2Scheme, "string", "ZLIB"});
   }
   // Of compressed blocks a file has full ones.
   sent.head.texels = texels_of(sent.images[0].info.desc);

@@ -19,13 +19,8 @@ void require_same_shape(const DumpInfo& first, const DumpInfo& other, const std:
          image_words(other), image_words(first));
   }
   if (other.desc != first.desc) {
-    const auto text = [](const TextureDesc& desc) {
-      return fmt::format("{}, grid {}, {}+{} texels, {}", record_text(desc.record),
-                         to_string(desc.grid), desc.block.x, 2 * desc.guard_band,
-                         gicodec::to_string(desc.layout.tiling));
-    };
     fail(Exit::bad_input, "{}: has another shape than {}: {} instead of {}", path, first_path,
-         text(other.desc), text(first.desc));
+         shape_text(other.desc), shape_text(first.desc));
   }
   if (other.channels != first.channels) {
     fail(Exit::bad_input, "{}: has other channels than {}: {} instead of {}", path, first_path,
@@ -80,12 +75,13 @@ std::vector<StoredTexture> inspect(const Sequence& sequence, Hints hints) {
   for (const FrameFile& file : sequence.frames) paths.push_back(file.path);
   hints = settle_formats(paths, std::move(hints));
   std::vector<StoredTexture> textures;
-  for (DumpInfo& info : read_dump_infos(first.path, hints)) {
-    textures.push_back(stored_image(sequence, std::move(info)));
-  }
-  std::vector<std::set<std::string>> lost(textures.size());
+  std::vector<std::set<std::string>> lost;
   for (const FrameFile& file : sequence.frames) {
     const auto infos = read_dump_infos(file.path, hints);
+    if (&file == &first) {
+      for (const DumpInfo& info : infos) textures.push_back(stored_image(sequence, info));
+      lost.resize(textures.size());
+    }
     if (infos.size() != textures.size()) {
       fail(Exit::bad_input, "{}: has {} images, and {} has {}; give files of one kind at a time",
            file.path, infos.size(), first.path, textures.size());

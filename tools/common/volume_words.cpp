@@ -1,5 +1,6 @@
 #include "volume_words.h"
 
+#include "dump/dump.h"
 #include "dump/error.h"
 
 #include <gicodec/textures.h>
@@ -99,6 +100,12 @@ std::string record_text(const Record& record) {
                         kKinds[static_cast<std::size_t>(component.type)]);
   }
   return text;
+}
+
+std::string shape_text(const TextureDesc& desc) {
+  return fmt::format("{}, grid {}, {}+{} texels, {}", record_text(desc.record),
+                     to_string(desc.grid), desc.block.x, 2 * desc.guard_band,
+                     gicodec::to_string(desc.layout.tiling));
 }
 
 std::string block_text(const BlockShape& block) {

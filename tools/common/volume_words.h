@@ -30,6 +30,8 @@ namespace gicodec::tools {
 /// "R16G16_SFLOAT", or for a record that an application defines "16 bytes: a 32 sfloat, b 96
 /// opaque".
 [[nodiscard]] std::string record_text(const Record& record);
+/// "R16G16_SFLOAT, grid 4x2x3, 16+2 texels, atlas_xy_z".
+[[nodiscard]] std::string shape_text(const TextureDesc& desc);
 /// "8x8", or "6x1x2" for deeper blocks.
 [[nodiscard]] std::string block_text(const BlockShape& block);
 /// "off by at most 3", "off by at most 0.01 relatively", or that the error is unknown; empty for 0.

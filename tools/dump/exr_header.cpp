@@ -213,11 +213,10 @@ class HeaderWalk {
   ExrChannel channel(std::string_view name, std::string_view fields) const {
     constexpr std::array<SampleType, 3> kTypes = {SampleType::uint32, SampleType::half,
                                                   SampleType::float32};
-    constexpr std::uint32_t kMaxSampling = 1024;
     std::array<std::uint32_t, 4> words{};
     std::memcpy(words.data(), fields.data(), sizeof words);
     const auto [type, linear, x, y] = words;
-    if (type >= kTypes.size() || x == 0 || y == 0 || x > kMaxSampling || y > kMaxSampling) {
+    if (type >= kTypes.size() || x == 0 || y == 0 || x > kMaxExrSampling || y > kMaxExrSampling) {
       fail(Exit::bad_input, "{}: its list of channels is damaged: channel {} of type {}, {}x{}",
            path_, name, type, x, y);
     }
@@ -233,8 +232,8 @@ class HeaderWalk {
         static_cast<std::uint64_t>(width * height) > kMaxImageBytes / 4) {
       fail(Exit::bad_input, "{}: an image of {}x{} texels is not supported", path_, width, height);
     }
-    constexpr std::int32_t kFar = 1 << 24;  // Attribute exr:origin holds these exactly.
-    if (std::abs(std::int64_t{box[0]}) > kFar || std::abs(std::int64_t{box[1]}) > kFar) {
+    if (std::abs(std::int64_t{box[0]}) > kMaxExrOrigin ||
+        std::abs(std::int64_t{box[1]}) > kMaxExrOrigin) {
       fail(Exit::bad_input, "{}: a data window from ({}, {}) on is not supported", path_, box[0],
            box[1]);
     }
@@ -328,6 +327,13 @@ Grid ExrPart::level_size(std::uint32_t level) const noexcept {
     return static_cast<std::uint32_t>(std::max<std::uint64_t>(1, (all + up) >> level));
   };
   return {side(width), side(height), 1};
+}
+
+std::int64_t exr_samples(std::int64_t first, std::int64_t last, std::int64_t step) noexcept {
+  const auto below = [step](std::int64_t at) {
+    return at >= 0 ? at / step : -((-at + step - 1) / step);
+  };
+  return below(last) - below(first - 1);
 }
 
 void check_image_bytes(std::uint64_t bytes, std::uint64_t ratio, const std::string& path) {

@@ -38,6 +38,14 @@ struct ExrPart {
   [[nodiscard]] Grid level_size(std::uint32_t level) const noexcept;
 };
 
+/// Farthest that a data window may begin from 0: attribute exr:origin holds these exactly.
+inline constexpr std::int32_t kMaxExrOrigin = 1 << 24;
+inline constexpr std::uint32_t kMaxExrSampling = 1024;
+
+/// How many of the texels first..last have a sample if every `step`th has one, 0 among them.
+[[nodiscard]] std::int64_t exr_samples(std::int64_t first, std::int64_t last,
+                                       std::int64_t step) noexcept;
+
 /// False where the bytes are no value of a type that OpenEXR knows: it would read another header
 /// than the one that they stand in, or allocate by a size in them.
 [[nodiscard]] bool is_sound_exr_value(std::string_view type, std::string_view bytes) noexcept;

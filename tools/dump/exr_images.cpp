@@ -29,8 +29,12 @@ std::string layer_of(const std::string& name) {
 
 std::string own_name(const std::string& name) { return name.substr(name.rfind('.') + 1); }
 
+bool alike_size(const ExrChannel& a, const ExrChannel& b) {
+  return a.x_sampling == b.x_sampling && a.y_sampling == b.y_sampling;
+}
+
 bool alike(const ExrChannel& a, const ExrChannel& b) {
-  return a.type == b.type && a.x_sampling == b.x_sampling && a.y_sampling == b.y_sampling;
+  return a.type == b.type && alike_size(a, b);
 }
 
 /// Takes the channels of these names, of one type and sampling, out of a layer.
@@ -81,11 +85,7 @@ std::vector<Group> groups_of(const std::vector<ExrChannel>& channels) {
 Grid samples_of(const ExrPart& part, const ExrChannel& channel, std::uint32_t level) {
   const Grid size = part.level_size(level);
   const auto side = [](std::int64_t first, std::uint32_t count, std::uint32_t step) {
-    const std::int64_t last = first + count - 1;
-    const auto below = [step](std::int64_t at) {
-      return at >= 0 ? at / step : -((-at + step - 1) / step);
-    };
-    return static_cast<std::uint32_t>(below(last) - below(first - 1));
+    return static_cast<std::uint32_t>(exr_samples(first, first + count - 1, step));
   };
   return {side(part.x, size.x, channel.x_sampling), side(part.y, size.y, channel.y_sampling), 1};
 }
@@ -203,9 +203,6 @@ class Images {
       images_.front().info.lost.push_back(fmt::format("channel {}", text_of_name(channel.name)));
     }
     return {};
-  }
-  static bool alike_size(const ExrChannel& a, const ExrChannel& b) {
-    return a.x_sampling == b.x_sampling && a.y_sampling == b.y_sampling;
   }
   /// Hints for a level below the first.
   [[nodiscard]] Hints smaller() const {

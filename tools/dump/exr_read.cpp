@@ -105,8 +105,8 @@ void require_window(const Imath::Box2i& window, const Grid& size, const std::str
        height, size.x, size.y);
 }
 
-std::vector<std::byte> read_texels(Imf::MultiPartInputFile& file, const ExrPart& part,
-                                   const ExrImage& image, const std::string& path) {
+void read_texels(Imf::MultiPartInputFile& file, const ExrPart& part, const ExrImage& image,
+                 Dump& dump, const std::string& path) {
   const auto place = image.info.place;
   std::vector<std::vector<char>> planes;
   const auto number = static_cast<int>(place.part), level = static_cast<int>(place.level);
@@ -123,16 +123,11 @@ std::vector<std::byte> read_texels(Imf::MultiPartInputFile& file, const ExrPart&
     lines.setFrameBuffer(frame_buffer(image, window, planes));
     lines.readPixels(window.min.y, window.max.y);
   }
-  Dump dump{image.info, {}};
   dump.texels.resize(static_cast<std::size_t>(texture_bytes(dump.info.desc)));
-  if (!dump.info.channels.exponent) {
-    add_values(dump, planes, path);
-    return std::move(dump.texels);
-  }
+  if (!dump.info.channels.exponent) return add_values(dump, planes, path);
   for (std::size_t i = 0; i < planes.size(); ++i) {
     if (!planes[i].empty()) add_channel(dump, i, planes[i].data(), path);
   }
-  return std::move(dump.texels);
 }
 
 }  // namespace
@@ -149,7 +144,7 @@ std::vector<Dump> read_exr(const std::string& path, const Hints& hints, bool tex
       // Where the table of places is missing OpenEXR finds lines and tiles by looking, so that only
       // reading shows whether all are there.
       if (texels || !file.partComplete(static_cast<int>(part))) {
-        dump.texels = read_texels(file, parts[part], image, path);
+        read_texels(file, parts[part], image, dump, path);
       }
       if (!texels) dump.texels = {};
     }

@@ -120,13 +120,11 @@ V2i v2i_of(const Attributes& attributes, const char* name, int least, int most, 
 
 /// Where a part's data window begins.
 V2i origin_of(const DumpInfo& info) {
-  constexpr int kFar = 1 << 24;  // floats hold all whole numbers up to it
-  return v2i_of(info.attributes, kExrOrigin, -kFar, kFar, {0, 0});
+  return v2i_of(info.attributes, kExrOrigin, -kMaxExrOrigin, kMaxExrOrigin, {0, 0});
 }
 
 V2i sampling_of(const DumpInfo& info) {
-  constexpr int kMost = 1024;
-  return v2i_of(info.attributes, kExrSampling, 1, kMost, {1, 1});
+  return v2i_of(info.attributes, kExrSampling, 1, static_cast<int>(kMaxExrSampling), {1, 1});
 }
 
 bool is_linear(const Attributes& attributes, const std::string& channel) {
@@ -175,15 +173,9 @@ Part part_of(std::span<const Dump> images, const std::string& path) {
 /// Throws unless an image has as many samples as its channels have in the window.
 void require_samples(const DumpInfo& info, const Imath::Box2i& window, const V2i& steps,
                      std::uint32_t level) {
-  const auto samples = [](int first, int last, int step) {
-    const auto below = [step](std::int64_t at) {
-      return at >= 0 ? at / step : -((-at + step - 1) / step);
-    };
-    return below(last) - below(std::int64_t{first} - 1);
-  };
   const Extent size = image_extent(info.desc);
-  if (samples(window.min.x, window.max.x, steps.x) == static_cast<std::int64_t>(size.width) &&
-      samples(window.min.y, window.max.y, steps.y) == static_cast<std::int64_t>(size.height)) {
+  if (exr_samples(window.min.x, window.max.x, steps.x) == static_cast<std::int64_t>(size.width) &&
+      exr_samples(window.min.y, window.max.y, steps.y) == static_cast<std::int64_t>(size.height)) {
     return;
   }
   throw std::invalid_argument(

@@ -103,21 +103,17 @@ std::vector<Pair> pairs_of(const CompareOptions& options) {
 
 Compared compare_images(const Pair& pair, const Dump& left, const Dump& right, bool headers) {
   if (left.info.desc != right.info.desc) {
-    const auto text = [](const TextureDesc& desc) {
-      return fmt::format("{}, grid {}, {}+{} texels, {}", record_text(desc.record),
-                         to_string(desc.grid), desc.block.x, 2 * desc.guard_band,
-                         gicodec::to_string(desc.layout.tiling));
-    };
     fail(Exit::bad_input, "{} and {} cannot be compared: {} against {}", pair.left, pair.right,
-         text(left.info.desc), text(right.info.desc));
+         shape_text(left.info.desc), shape_text(right.info.desc));
   }
   return {pair, left.info.image, left.info.desc,
           compare_texels(left.info.desc, left.texels, right.texels),
           headers ? compare_headers(left.info, right.info) : std::vector<std::string>{}};
 }
 
-/// One for each image of the files.
-std::vector<Compared> compare_pair(const Pair& pair, const CompareOptions& options) {
+/// One for each image of the files. Adds to `left_out` what dumps do not keep of them.
+std::vector<Compared> compare_pair(const Pair& pair, const CompareOptions& options,
+                                   std::vector<std::string>& left_out) {
   const std::string name = group_sequences({pair.left}).front().name;
   const Hints hints =
       settle_formats(std::vector{pair.left, pair.right}, hints_for(options.geometry, name));
@@ -133,24 +129,19 @@ std::vector<Compared> compare_pair(const Pair& pair, const CompareOptions& optio
   }
   // Files of different kinds have different attributes even for the same texels.
   const bool headers = !options.texels_only && image_kind(pair.left) == image_kind(pair.right);
+  for (const auto& [path, images] :
+       {std::pair(&pair.left, &left), std::pair(&pair.right, &right)}) {
+    for (const Dump& image : *images) {
+      if (image.info.lost.empty()) continue;
+      left_out.push_back(
+          fmt::format("{}: {} not compared", *path, fmt::join(image.info.lost, ", ")));
+    }
+  }
   std::vector<Compared> all;
   for (std::size_t i = 0; i < left.size(); ++i) {
     all.push_back(compare_images(pair, left[i], right[i], headers));
   }
   return all;
-}
-
-/// What no dump keeps of the files, and what is not compared therefore.
-std::vector<std::string> not_compared(const Pair& pair, const CompareOptions& options) {
-  std::vector<std::string> lines;
-  for (const std::string& path : {pair.left, pair.right}) {
-    const std::string name = group_sequences({path}).front().name;
-    for (const DumpInfo& info : read_dump_infos(path, hints_for(options.geometry, name))) {
-      if (info.lost.empty()) continue;
-      lines.push_back(fmt::format("{}: {} not compared", path, fmt::join(info.lost, ", ")));
-    }
-  }
-  return lines;
 }
 
 void print_text(const Compared& compared) {
@@ -197,8 +188,8 @@ Exit compare(const CompareOptions& options, const Cli& cli) {
       json.push_back({{"left", pair.left}, {"right", pair.right}, {"missing", missing}});
       continue;
     }
-    const std::vector<std::string> left_out = not_compared(pair, options);
-    for (const Compared& compared : compare_pair(pair, options)) {
+    std::vector<std::string> left_out;
+    for (const Compared& compared : compare_pair(pair, options, left_out)) {
       same &= compared.same();
       if (options.format == "text") {
         print_text(compared);
