@@ -15,13 +15,14 @@ inline std::vector<FormatInfo> distinct_formats() {
       const bool floats = x.type == ComponentType::sfloat || y.type == ComponentType::sfloat;
       return x.offset == y.offset && x.bits == y.bits && (!floats || x.type == y.type);
     };
+    const auto left = a.record.used(), right = b.record.used();
     return a.record.bytes == b.record.bytes &&
-           std::ranges::equal(a.record.used(), b.record.used(), same);
+           std::equal(left.begin(), left.end(), right.begin(), right.end(), same);
   };
   std::vector<FormatInfo> distinct;
   for (const FormatInfo& format : formats()) {
-    const bool known = std::ranges::any_of(
-        distinct, [&](const FormatInfo& other) { return alike(format, other); });
+    const auto same = [&](const FormatInfo& other) { return alike(format, other); };
+    const bool known = std::any_of(distinct.begin(), distinct.end(), same);
     if (!known) distinct.push_back(format);
   }
   return distinct;

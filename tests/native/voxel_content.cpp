@@ -225,7 +225,7 @@ void put_octree(Pool& pool, const TextureDesc& desc, unsigned frame, std::uint64
     }
   }
   std::ranges::sort(all, {}, [](const auto& one) { return one.first; });
-  const auto end = std::ranges::unique(all).begin();
+  const auto end = std::unique(all.begin(), all.end());
   std::uint32_t slot = 0;
   for (auto one = all.begin(); one != end && slot < block_count(desc); ++one, ++slot) {
     pool.put_brick(slot, one->second, now[one->second.level]);

@@ -312,8 +312,8 @@ class World {
           } else if (current && had && receiver.delivery == Delivery::unicast) {
             const auto end = volume_.desc().groups[group].bundled ? volume_.first_of(group + 1)
                                                                   : stream.texture + 1;
-            const auto differs = [&](const Contents& past) {
-              for (std::uint8_t id = stream.texture; id < end; ++id) {
+            const auto differs = [&, first = stream.texture, block](const Contents& past) {
+              for (std::uint8_t id = first; id < end; ++id) {
                 if (past[id][block] != before.at({id, block})) return true;
               }
               return false;

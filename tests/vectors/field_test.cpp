@@ -89,13 +89,14 @@ TEST(VectorField, FollowsWhatIsLinear) {
     }
   }
   ddgi::Random random(7);
-  const auto& [grid, origin, spacing, scroll] = field.geometry;
+  const VolumeGeometry& geometry = field.geometry;
+  const Grid& grid = geometry.grid;
   for (const Interpolation interpolation : kBoth) {
     const float edge = interpolation == Interpolation::tricubic ? 1 : 0;
     for (int i = 0; i < 500; ++i) {
       const auto along = [&](std::size_t axis, std::uint32_t vertices) {
         const float last = static_cast<float>(vertices - 1) - edge;
-        return origin[axis] + spacing[axis] * random.in(edge, last);
+        return geometry.origin[axis] + geometry.spacing[axis] * random.in(edge, last);
       };
       const Vec3 p{along(0, grid.x), along(1, grid.y), along(2, grid.z)};
       const float expected = std::max(value(p), 0.0F);

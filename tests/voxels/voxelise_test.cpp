@@ -138,7 +138,7 @@ RC_GTEST_PROP(Voxelise, KeysAreCells, (std::uint32_t seed)) {
   const VoxelKey key = morton_key(cell);
   RC_ASSERT(morton_cell(key) == cell);
   RC_ASSERT(morton_cell(key >> 3) == (Cell{cell[0] / 2, cell[1] / 2, cell[2] / 2}));
-  RC_ASSERT(key >> 9 == morton_key({cell[0] / 8, cell[1] / 8, cell[2] / 8}));
+  RC_ASSERT((key >> 9) == morton_key({cell[0] / 8, cell[1] / 8, cell[2] / 8}));
 }
 
 TEST(Voxelise, AGridCoversItsBox) {

@@ -102,7 +102,7 @@ std::vector<Sample> compressed_samples(const Record& record) {
   const std::uint32_t bits = 8U * record.bytes / (half ? 2 : 1);
   std::vector<Sample> samples;
   for (std::uint32_t i = 0; i < (two ? 2U : 1U); ++i) {
-    const auto channel = static_cast<std::uint32_t>(family.channels[i]);
+    const std::uint32_t channel = static_cast<unsigned char>(family.channels[i]);
     const std::uint32_t linear = channel == kAlpha && has(record.format, "SRGB") ? kIsLinear : 0;
     Sample sample{half ? i * bits : 0, bits, channel | linear, 0, UINT32_MAX};
     if (has(record.format, "SNORM")) {
