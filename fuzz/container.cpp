@@ -125,6 +125,17 @@ std::size_t play(ContainerReader& reader) {
   return packets;
 }
 
+/// Metadata beside the description is the same from a pipe, which keeps it, and costs what it says.
+void check_metadata(ContainerReader& reader, ContainerReader& piped) {
+  for (std::size_t i = 0; i < reader.description().textures.size(); ++i) {
+    const auto id = static_cast<std::uint8_t>(i);
+    const auto metadata = reader.metadata(id);
+    const auto again = piped.metadata(id);
+    fuzz::check(metadata.ok() == again.ok(), "metadata of a pipe");
+    fuzz::check(!metadata.ok() || *metadata == *again, "the same metadata");
+  }
+}
+
 /// Every packet that a reader gives, to its end or an error.
 std::vector<ContainerPacket> packets_of(ContainerReader& reader) {
   std::vector<ContainerPacket> packets;
@@ -203,7 +214,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   fuzz::Exact file(std::span(reinterpret_cast<const std::byte*>(data), size));
   if (size > 0 && (data[size - 1] & 1) == 0) put_right(file.span());
   DecodeLimits limits;
-  limits.max_texture_bytes = 1U << 16;
+  limits.max_texture_bytes = limits.max_metadata_bytes = 1U << 16;
   check_reading(file.span(), limits);
   MemorySource memory(file.span());
   Pipe pipe(file.span());
@@ -211,6 +222,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   auto piped = ContainerReader::open(pipe, limits);
   fuzz::check(seeking.status() == piped.status(), "seeking changes nothing about opening");
   if (!seeking) return 0;
+  check_metadata(*seeking, *piped);
   fuzz::check(play(*seeking) == play(*piped), "the same packets either way");
   for (std::uint64_t frame = 0; frame < 8 && seeking->seekable(); ++frame) {
     if (seeking->seek(frame) == Status::ok) (void)play(*seeking);

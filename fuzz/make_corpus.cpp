@@ -209,6 +209,7 @@ void add_regions(Corpus& corpus, const TextureDesc& desc, std::string_view backe
   description.volumes[0].region = region;
   test::MemorySink sink;
   auto writer = ContainerWriter::create(sink, description);
+  (void)writer->add_metadata(0, {{"attribute@1:a", "string b"}, {"attribute@2:a", "string c"}});
   const std::uint32_t regions = std::min(regions_of(desc, region).regions(), 3U);
   std::vector<std::vector<Packet>> packets;
   for (std::uint32_t i = 0; i < regions; ++i) {

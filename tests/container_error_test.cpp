@@ -119,7 +119,7 @@ TEST(HostileContainer, UnknownEntries) {
     EXPECT_EQ(read_through(head + skippable + first + skippable + second + end), Status::ok);
     EXPECT_EQ(read_through(head + skippable + first + skippable, true), Status::truncated);
   }
-  for (const int type : {0, 1, 5, 0x7F}) {
+  for (const int type : {0, 1, 6, 0x7F}) {
     const auto mandatory = entry(static_cast<std::uint8_t>(type), some);
     EXPECT_EQ(read_through(head + first + mandatory + end), Status::unsupported_feature) << type;
   }
@@ -193,7 +193,7 @@ TEST(HostileContainer, FalseLengthsCostNothing) {
   for (const std::uint64_t length :
        {std::uint64_t{1} << 29, std::uint64_t{1} << 30, (std::uint64_t{1} << 30) + 1,
         std::uint64_t{1} << 40, kEnd - 16, kEnd - 4, kEnd - 3, kEnd - 1, kEnd}) {
-    for (const int type : {1, 2, 3, 0x80}) {
+    for (const int type : {1, 2, 3, 5, 0x80}) {
       Bytes lying;
       ByteWriter writer(lying);
       writer.fixed(static_cast<std::uint8_t>(type));
@@ -203,7 +203,8 @@ TEST(HostileContainer, FalseLengthsCostNothing) {
       for (const bool unlimited : {false, true}) {
         DecodeLimits limits;
         if (unlimited) {
-          limits.max_packet_bytes = limits.max_index_bytes = limits.max_description_bytes = kEnd;
+          limits.max_packet_bytes = limits.max_index_bytes = limits.max_description_bytes =
+              limits.max_metadata_bytes = kEnd;
         }
         PipeSource pipe(file);
         GrowingSource memory(file, file.size());

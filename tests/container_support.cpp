@@ -77,13 +77,16 @@ ContainerDescription sample_description() {
   return description;
 }
 
-Sample make_sample(std::uint64_t seed, std::uint32_t frames, std::uint32_t gop,
-                   std::uint32_t flush) {
+Sample make_sample(std::uint64_t seed, std::uint32_t frames, std::uint32_t gop, std::uint32_t flush,
+                   std::span<const Metadata> metadata) {
   Random random(seed);
   Sample sample;
   sample.description = sample_description();
   MemorySink sink;
   auto writer = *ContainerWriter::create(sink, sample.description);
+  for (std::size_t i = 0; i < metadata.size(); ++i) {
+    if (writer.add_metadata(static_cast<std::uint8_t>(i), metadata[i]) != Status::ok) return {};
+  }
   PacketMaker maker(sample.description);
   std::map<std::uint64_t, std::uint32_t> made;
   const TextureRegion regions[] = {{0}, {1}, {2, 0}, {2, 1}, {2, 2}, {2, 3}};

@@ -119,9 +119,10 @@ struct ProbeTexture {
 ContainerDescription probe_description(std::span<const ProbeTexture> textures,
                                        Metadata metadata = {});
 ContainerDescription sample_description();
-/// Keyframes of a texture every `gop` of its packets; an index part after every `flush` frames.
+/// Keyframes of a texture every `gop` of its packets; an index part after every `flush` frames;
+/// metadata entries of the first textures.
 Sample make_sample(std::uint64_t seed, std::uint32_t frames = 9, std::uint32_t gop = 4,
-                   std::uint32_t flush = 3);
+                   std::uint32_t flush = 3, std::span<const Metadata> metadata = {});
 /// An entry with its checksum.
 Bytes entry(std::uint8_t type, std::span<const std::byte> body);
 Bytes packet_entry(const ContainerPacket& packet);

@@ -92,6 +92,11 @@ class ContainerWriter {
   [[nodiscard]] static Result<ContainerWriter> create(Sink& sink,
                                                       const ContainerDescription& description,
                                                       std::span<const Kind* const> kinds = {});
+  /// Adds metadata of a texture that is long or changes from frame to frame: it is packed, and read
+  /// on demand, so that descriptions stay small. At most 64 MiB of all textures together; before
+  /// the first packet, by ascending texture_id. Errors: out_of_order; unknown_texture;
+  /// invalid_description for a text that is not UTF-8; limit_exceeded.
+  Status add_metadata(std::uint8_t texture_id, const Metadata& metadata);
   /// Adds a packet to a frame. Frames must not decrease; a region of a texture has at most one
   /// packet per frame. The packet's own texture_id names its texture.
   /// Errors: wrong_frame; unknown_texture; unknown_region; description_mismatch for a keyframe that
@@ -138,6 +143,11 @@ class ContainerReader {
   [[nodiscard]] static Result<ContainerReader> open(Source& source, const DecodeLimits& limits = {},
                                                     std::span<const Kind* const> kinds = {});
   [[nodiscard]] const ContainerDescription& description() const noexcept;
+
+  /// What ContainerWriter::add_metadata() added of a texture; empty if it added nothing. Reads as
+  /// far as the first packet. unknown_texture; limit_exceeded if more than
+  /// DecodeLimits::max_metadata_bytes are said to be there, before any are allocated.
+  [[nodiscard]] Result<Metadata> metadata(std::uint8_t texture_id);
 
   /// Reads the next packet into `packet`. Status::end after the last one. Status::truncated if the
   /// file was cut off or is growing: all packets before are sound, and if the source can seek, a

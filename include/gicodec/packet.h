@@ -43,6 +43,8 @@ struct DecodeLimits {
   std::uint64_t max_work_bytes = std::uint64_t{2} << 30;
   std::uint32_t max_textures = 256;  ///< in one container
   std::uint64_t max_description_bytes = std::uint64_t{1} << 20;
+  /// Metadata of a container beside its description, unpacked, of all textures together.
+  std::uint64_t max_metadata_bytes = std::uint64_t{64} << 20;
   std::uint64_t max_index_bytes = std::uint64_t{64} << 20;  ///< seek index of a container
 };
 

@@ -67,6 +67,8 @@ class ContainerPlayer {
   /// or is not seekable().
   Status seek(std::uint64_t frame);
   [[nodiscard]] bool seekable() const noexcept;
+  /// As ContainerReader::metadata().
+  [[nodiscard]] Result<Metadata> metadata(std::uint8_t texture);
   /// True once the player has found the container's end mark.
   [[nodiscard]] bool finished() const noexcept;
   /// Number of the last frame that next() or skip() began.

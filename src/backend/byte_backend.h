@@ -4,7 +4,7 @@
 
 #include <gicodec/backend.h>
 
-#include "backend/compressor.h"
+#include "base/compressor.h"
 
 namespace gicodec {
 

@@ -3,6 +3,7 @@
 #include "base/float_bits.h"
 #include "base/guard.h"
 #include "bitstream/container_format.h"
+#include "bitstream/container_metadata.h"
 #include "bitstream/description.h"
 
 #include <algorithm>
@@ -13,33 +14,7 @@
 namespace gicodec {
 namespace {
 
-constexpr std::size_t kMaxText = std::size_t{1} << 20;
-/// Bytes of the smallest metadata entry.
-constexpr std::size_t kMinMetadataEntry = 2;
 constexpr std::uint64_t kMaxFoldedScroll = std::uint64_t{2} * kMaxScroll;
-
-std::string read_text(ByteReader& reader, std::size_t most) {
-  const auto text = reader.text(most);
-  if (!is_utf8(text)) reader.fail(Status::corrupt);
-  return std::string(text);
-}
-
-void write_metadata(const Metadata& metadata, ByteWriter& writer) {
-  writer.varint(metadata.size());
-  for (const auto& [name, value] : metadata) {
-    writer.text(name);
-    writer.text(value);
-  }
-}
-
-void read_metadata(ByteReader& reader, Metadata& metadata) {
-  const auto count = reader.varint(reader.rest().size() / kMinMetadataEntry);
-  for (std::uint64_t i = 0; i < count && reader.ok(); ++i) {
-    std::string name = read_text(reader, kMaxText);
-    std::string value = read_text(reader, kMaxText);
-    if (reader.ok()) metadata.emplace_back(std::move(name), std::move(value));
-  }
-}
 
 void write_real(float value, ByteWriter& writer) {
   writer.bytes(std::as_bytes(std::span(&value, 1)));
@@ -187,12 +162,6 @@ bool agree(const ContainerDescription& read, const ContainerDescription& given) 
 }
 
 }  // namespace
-
-const std::string* find_metadata(const Metadata& metadata, std::string_view name) noexcept {
-  const auto it = std::find_if(metadata.begin(), metadata.end(),
-                               [name](const auto& entry) { return entry.first == name; });
-  return it == metadata.end() ? nullptr : &it->second;
-}
 
 Status add_volume(ContainerDescription& description, std::string name, const VolumeDesc& volume,
                   std::span<const Kind* const> kinds) {

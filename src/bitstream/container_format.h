@@ -22,6 +22,7 @@ enum class EntryType : std::uint8_t {
   packet = 2,
   index = 3,
   end = 4,
+  metadata = 5,
 };
 inline constexpr std::uint8_t kSkippable = 0x80;
 

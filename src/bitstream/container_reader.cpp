@@ -2,6 +2,7 @@
 
 #include "base/guard.h"
 #include "bitstream/container_index.h"
+#include "bitstream/metadata_entries.h"
 
 #include <algorithm>
 #include <iterator>
@@ -35,12 +36,14 @@ struct ContainerReader::State {
   /// the index lists it.
   std::optional<SeekEntry> follow_index();
   Status next(ContainerPacket& packet);
+  Status read_next(FileEntry& entry);
   Status seek(std::uint64_t frame);
   [[nodiscard]] std::vector<Start> starts_of(std::vector<SeekEntry> keyframes) const;
 
   EntryReader reader;
   ContainerDescription description;
   ContainerIndex index;
+  MetadataEntries metadata;
   std::uint64_t position = 0;  ///< of the next entry
   std::uint64_t last_frame = 0;
   std::vector<std::uint64_t> selected;  ///< keys, ascending; empty: all
@@ -76,9 +79,12 @@ Result<ContainerReader> ContainerReader::open(Source& source, const DecodeLimits
     if (status != Status::ok) return status;
     state->reader.set_rules(packet_rules(state->description));
     state->position = entry.end();
+    state->metadata = MetadataEntries(entry.end());
     if (source.size()) {
-      // A missing or damaged index is no error: packets can still be read in order.
-      state->seekable = state->index.load(state->reader, state->position) == Status::ok;
+      // Neither is an error yet: next() and metadata() report damage, and packets can be read in
+      // order without an index.
+      (void)state->metadata.find(state->reader);
+      state->seekable = state->index.load(state->reader, state->metadata.end()) == Status::ok;
       state->finished = state->index.finished();
       if (!state->seekable) state->index = {};
     }
@@ -100,13 +106,30 @@ std::optional<SeekEntry> ContainerReader::State::follow_index() {
   return *it;
 }
 
+/// Reads the entry at `position`; passes over metadata.
+Status ContainerReader::State::read_next(FileEntry& entry) {
+  if (position <= metadata.end()) {
+    if (const Status status = metadata.find(reader); status != Status::ok) return status;
+    position = metadata.end();
+  }
+  Status status = Status::ok;
+  if (auto ahead = metadata.take_ahead()) {
+    entry = ahead->entry;
+    status = ahead->status;
+  } else {
+    status = reader.read(position, entry);
+  }
+  const bool late = status == Status::ok && entry.is(EntryType::metadata);
+  return late ? Status::corrupt : status;
+}
+
 Status ContainerReader::State::next(ContainerPacket& packet) {
   while (!ended) {
     const auto listed = follow_index();
     const bool repeatable = reader.size().has_value();
     ended = !repeatable;  // A pipe cannot repeat a partial read.
     FileEntry entry;
-    Status status = reader.read(position, entry);
+    Status status = read_next(entry);
     const bool is_packet = entry.is(EntryType::packet);
     if (status == Status::ok) {
       const bool other = listed && !(is_packet && entry.packet == *listed);
@@ -197,6 +220,17 @@ Status ContainerReader::State::seek(std::uint64_t frame) {
   last_frame = 0;
   ended = false;
   return Status::ok;
+}
+
+Result<Metadata> ContainerReader::metadata(std::uint8_t texture_id) {
+  return guarded([&]() -> Result<Metadata> {
+    State& state = *state_;
+    if (texture_id >= state.description.textures.size()) return Status::unknown_texture;
+    if (const Status status = state.metadata.find(state.reader); status != Status::ok) {
+      return status;
+    }
+    return state.metadata.read(state.reader, texture_id);
+  });
 }
 
 Status ContainerReader::next(ContainerPacket& packet) {

@@ -4,6 +4,7 @@
 #include "base/bytes.h"
 #include "base/guard.h"
 #include "bitstream/container_format.h"
+#include "bitstream/container_metadata.h"
 #include "bitstream/description.h"
 #include "bitstream/packet.h"
 #include "bitstream/region_field.h"
@@ -36,8 +37,11 @@ struct ContainerWriter::State {
   std::vector<TextureDesc> textures;
   std::vector<Grid> region_sizes;
   std::uint64_t written = 0;
-  std::uint64_t last_part = 0;      ///< offset of the last index part; 0 if there is none
-  std::vector<SeekEntry> unlisted;  ///< packets since that part
+  std::uint64_t last_part = 0;       ///< offset of the last index part; 0 if there is none
+  std::vector<SeekEntry> unlisted;   ///< packets since that part
+  int last_metadata = -1;            ///< the last texture with a metadata entry
+  std::uint64_t metadata_bytes = 0;  ///< of all metadata entries, unpacked
+  bool has_packets = false;
   std::uint64_t last_frame = 0;
   std::set<std::uint64_t> in_frame;  ///< keys of the packets of `last_frame`
   bool ended = false;
@@ -134,7 +138,32 @@ Status ContainerWriter::State::add(std::uint64_t frame, std::span<const std::byt
     in_frame.swap(keys);
   }
   last_frame = frame;
+  has_packets = true;
   return Status::ok;
+}
+
+Status ContainerWriter::add_metadata(std::uint8_t texture_id, const Metadata& metadata) {
+  return guarded([&]() -> Status {
+    State& state = *state_;
+    if (texture_id >= state.rules.size()) return Status::unknown_texture;
+    if (state.ended || state.has_packets || texture_id <= state.last_metadata) {
+      return Status::out_of_order;
+    }
+    if (metadata.empty()) return Status::ok;
+    std::vector<std::byte> body, out;
+    Status status = pack_metadata(texture_id, metadata, body);
+    if (status != Status::ok) return status;
+    const std::uint64_t bytes = state.metadata_bytes + read_packed_head(body)->bytes;
+    if (bytes > kMaxPackedMetadata || body.size() > kMaxPackedMetadata) {
+      return Status::limit_exceeded;
+    }
+    append_entry(EntryType::metadata, {}, body, out);
+    status = state.write(out);
+    if (status != Status::ok) return status;
+    state.last_metadata = texture_id;
+    state.metadata_bytes = bytes;
+    return Status::ok;
+  });
 }
 
 Status ContainerWriter::add(std::uint64_t frame, std::span<const std::byte> packet,

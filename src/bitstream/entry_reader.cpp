@@ -109,6 +109,7 @@ Status EntryReader::read_head(std::uint64_t offset, FileEntry& entry) {
 
 std::uint64_t EntryReader::limit_of(const FileEntry& entry) const noexcept {
   if (entry.is(EntryType::description)) return limits_.max_description_bytes;
+  if (entry.is(EntryType::metadata)) return limits_.max_metadata_bytes;
   return entry.is(EntryType::index) ? limits_.max_index_bytes : limits_.max_packet_bytes;
 }
 
@@ -118,10 +119,9 @@ Status EntryReader::read_body(FileEntry& entry) {
   if (const Status status = more(entry.size); status != Status::ok) return status;
   if (const Status status = more(kEntryChecksum); status != Status::ok) return status;
   const auto summed = std::span<const std::byte>(buffer_).first(buffer_.size() - kEntryChecksum);
-  ByteReader tail(std::span<const std::byte>(buffer_).subspan(summed.size()));
-  if (tail.fixed<std::uint32_t>() != checksum(summed)) return Status::checksum_mismatch;
   entry.bytes = summed.subspan(head);
-  return Status::ok;
+  ByteReader tail(std::span<const std::byte>(buffer_).subspan(summed.size()));
+  return tail.fixed<std::uint32_t>() == checksum(summed) ? Status::ok : Status::checksum_mismatch;
 }
 
 Status EntryReader::read(std::uint64_t offset, FileEntry& entry) {
@@ -143,7 +143,7 @@ Status EntryReader::read(std::uint64_t offset, FileEntry& entry) {
     return entry.bytes.size() == kEndBody ? Status::ok : Status::corrupt;
   }
   const bool first = offset == kFileHeader && entry.is(EntryType::description);
-  const bool known = first || entry.type >= kSkippable;
+  const bool known = first || entry.is(EntryType::metadata) || entry.type >= kSkippable;
   return known ? Status::ok : Status::unsupported_feature;
 }
 

@@ -1,7 +1,7 @@
 #include "stream/guard_band_section.h"
 
-#include "backend/compressor.h"
 #include "base/bytes.h"
+#include "base/compressor.h"
 #include "base/parallel.h"
 #include "bitstream/index_buffer.h"
 #include "texture/guard_band.h"

@@ -6,7 +6,7 @@
 #include <gicodec/status.h>
 #include <gicodec/texture.h>
 
-#include "backend/compressor.h"
+#include "base/compressor.h"
 #include "base/memory.h"
 #include "texture/stale_bands.h"
 

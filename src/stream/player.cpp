@@ -71,6 +71,10 @@ std::span<const ContainerPacket> ContainerPlayer::packets() const noexcept {
   return std::span(state_->packets).first(state_->packet_count);
 }
 
+Result<Metadata> ContainerPlayer::metadata(std::uint8_t texture) {
+  return state_->reader.metadata(texture);
+}
+
 Status ContainerPlayer::select(std::span<const std::uint8_t> textures) {
   if (state_->started) return Status::out_of_order;
   return guarded([&]() -> Status {

@@ -130,6 +130,22 @@ TEST(FailingContainer, AReaderGoesOnAfterEveryAllocation) {
   }
 }
 
+TEST(FailingContainer, MetadataIsWrittenAndReadAfterEveryAllocation) {
+  const Metadata metadata{{"manifest", std::string(100'000, 'm')}, {"frame", "1"}};
+  MemorySink sink;
+  sink.bytes.reserve(std::size_t{1} << 20);
+  auto writer = *ContainerWriter::create(sink, sample_description());
+  const std::size_t size = sink.bytes.size();
+  ASSERT_EQ(until_enough([&] { return writer.add_metadata(1, metadata); },
+                         [&] { EXPECT_EQ(sink.bytes.size(), size); }),
+            Status::ok);
+  ASSERT_EQ(writer.finish(), Status::ok);
+  MemorySource source(sink.bytes);
+  auto reader = *ContainerReader::open(source);
+  EXPECT_EQ(*until_enough([&] { return reader.metadata(1); }, [] {}), metadata);
+  EXPECT_TRUE(until_enough([&] { return reader.metadata(0); }, [] {})->empty());
+}
+
 /// A player goes on with the packet for which there was no memory.
 TEST(FailingContainer, APlayerGoesOnAfterEveryAllocation) {
   const TextureDesc desc = probe_texture(Format::R8G8B8A8_UNORM, {4, 3, 2}, 4, 1);

@@ -1,7 +1,7 @@
 // Payloads that are cut, damaged or out of place: the exact records or an error, never anything
 // else, and a working session after the next keyframe.
-#include "backend/compressor.h"
 #include "backend/hevc/payload.h"
+#include "base/compressor.h"
 #include "hevc/session.h"
 
 #include <gtest/gtest.h>

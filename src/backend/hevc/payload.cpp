@@ -1,10 +1,8 @@
 #include "backend/hevc/payload.h"
 
-#include "backend/compressor.h"
 #include "base/bytes.h"
+#include "base/compressor.h"
 #include "transform/yuv444p16.h"
-
-#include <zstd.h>
 
 namespace gicodec::hevc {
 namespace {
@@ -13,10 +11,9 @@ constexpr std::uint8_t kPackingPlanes = 1, kLayoutPacked = 2, kLossy = 4, kPacki
 constexpr std::uint8_t kKnownFlags = kPackingPlanes | kLayoutPacked | kLossy | kPackingLuma;
 constexpr std::size_t kHeadBytes = 9;
 constexpr std::size_t kParameterSetBytes = 4096;
-constexpr int kAlphaLevel = 3;  // zstd's default
 
 constexpr std::size_t packed_alpha_bytes(std::size_t texels) noexcept { return (texels + 3) / 4; }
-/// At least ZSTD_compressBound() of any zstd version.
+/// At least what any version of zstd needs.
 constexpr std::size_t alpha_section_bound(std::size_t packed) noexcept {
   return packed + packed / 256 + 64;
 }
@@ -89,11 +86,12 @@ Result<std::vector<std::byte>> write_alpha(std::span<const std::byte> texels, Pa
   head.alpha = kAlphaCoded;
   std::vector<std::byte> packed(packed_alpha_bytes(texels.size() / 4));
   pack_alpha(texels, packed);
-  std::vector<std::byte> section(ZSTD_compressBound(packed.size()));
-  const std::size_t size =
-      ZSTD_compress(section.data(), section.size(), packed.data(), packed.size(), kAlphaLevel);
-  if (ZSTD_isError(size) != 0) return Status::backend_failed;
-  section.resize(size);
+  auto compressor = Compressor::create(Compression::zstd, 0);
+  if (!compressor) return compressor.status();
+  std::vector<std::byte> section;
+  if (const Status status = compressor->compress(packed, section); status != Status::ok) {
+    return status;
+  }
   return section;
 }
 

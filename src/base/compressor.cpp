@@ -1,4 +1,4 @@
-#include "backend/compressor.h"
+#include "base/compressor.h"
 
 #include <lz4.h>
 #include <lz4hc.h>
