@@ -121,6 +121,22 @@ dumps() {
   ends 0 $server dumps
 }
 
+# Frames that are missing: the container that is advised is played.
+gaps() {
+  local server frame
+  mkdir files
+  for frame in 0000 0002; do ln -s "$testdata"/tomb-converged/*.$frame.exr files; done
+  start refused "$bin/gi-server" --play files
+  ends 3 $last refused
+  says refused "\"gicodec encode --allow-gaps\" makes a container that can be played"
+  "$gicodec" encode -q --allow-gaps -o files.gic files || failed "no container of frames with gaps"
+  start gaps "$bin/gi-server" --play files.gic --loop --updates 3 --wait 1 --proofs --port-file gaps.port
+  server=$last
+  start viewer "$bin/gi-client" --connect "127.0.0.1:$(port_of gaps)" --updates 3 --expect-proofs
+  ends 0 $last viewer
+  ends 0 $server gaps
+}
+
 # Without proofs there is nothing to expect; with nobody there is no server.
 unproved() {
   local server
@@ -151,7 +167,7 @@ stopped() {
   ends 0 $client watching
 }
 
-beside culled all deliveries container nobody makes_room crowd dumps unproved stopped
+beside culled all deliveries container nobody makes_room crowd dumps gaps unproved stopped
 together
 cmp culled/pictures/frame.0001.png all/pictures/frame.0001.png || failed "culling shows"
 # Probes in all updates of each.

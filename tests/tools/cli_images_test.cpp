@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -143,6 +144,31 @@ TEST_F(CliImages, LayersComeBack) {
                           {"may be the original", "channel depth.Z"});
 }
 
+TEST_F(CliImages, DdsFilesOfNvidiaTextureTools) {
+  if (std::system("command -v nvcompress nvassemble >/dev/null") != 0) {
+    GTEST_SKIP() << "nvcompress is missing; script/bootstrap ci installs it";
+  }
+  const std::string folder = program_.path("in"), picture = program_.path("a.png");
+  const Dump colour = random_dump(kColourDesc, 1);
+  write_dump(program_.path("a.exr"), colour.info, colour.texels);
+  program_.succeed({"preview", "a.exr", "-o", "a.png"});
+  const auto run = [](const std::string& command) {
+    ASSERT_EQ(std::system((command + " >/dev/null 2>&1").c_str()), 0) << command;
+  };
+  for (const char* format : {"rgb", "bc1", "bc1a", "bc2", "bc3", "bc3n", "bc4", "bc5"}) {
+    for (const char* levels : {"", "-nomips"}) {
+      run(fmt::format("nvcompress -nocuda -fast {} -{} '{}' '{}/{}{}.dds'", levels, format, picture,
+                      folder, format, levels));
+    }
+  }
+  const std::string faces = fmt::format("'{0}' '{0}' '{0}' '{0}' '{0}' '{0}'", picture);
+  run(fmt::format("nvassemble -cube {} -o '{}/cube.dds'", faces, folder));
+  program_.succeed({"encode", "-o", "x.gic", "in"});
+  program_.succeed({"decode", "x.gic", "-o", "out"});
+  expect_all_back();
+  EXPECT_EQ(program_.files("in").size(), 17U);
+}
+
 TEST_F(CliImages, InfoSaysWhatAFileHolds) {
   write("sky box.ktx2", images_of(Format::R16_SFLOAT, {8, 8, 1}, false, 2, 6));
   const std::string text = program_.succeed({"info", "in/sky box.ktx2"}).out;
@@ -152,6 +178,29 @@ TEST_F(CliImages, InfoSaysWhatAFileHolds) {
   }
   expect_part(program_.succeed({"info", "--format", "json", "in/sky box.ktx2"}).out,
               "\"name\": \"nz.mip1\"");
+}
+
+TEST_F(CliImages, NegativeFramesAndStillsComeBack) {
+  const TextureDesc desc = map_texture(Format::R16_SFLOAT, {5, 3, 1}, {8, 8, 1});
+  std::uint32_t seed = 0;
+  for (const char* name : {"foo.-002.exr", "foo.-001.exr", "foo.000.exr", "foo.001.exr", "sky.exr",
+                           "bar.-002.exr", "bar.-001.exr", "bar.0000.exr", "bar.0001.exr",
+                           "irr_1001.exr", "irr_1002.exr", "irr_1011.exr", "b_1.exr", "b_2.exr"}) {
+    const Dump dump{make_info(desc), random_texels(desc, ++seed)};
+    write(name, {&dump, 1});
+  }
+  program_.expect_failure(Exit::bad_input, {"encode", "-o", "x.gic", "in"},
+                          {"--allow-gaps", "--stills"});  // b has frames 1 and 2, foo others.
+  const auto outcome = program_.succeed({"encode", "-o", "x.gic", "--allow-gaps", "in"});
+  expect_part(outcome.err, "b_1.exr and 1 more: their numbers are taken for those of frames");
+  program_.succeed({"decode", "x.gic", "-o", "out"});
+  expect_all_back();
+  expect_part(program_.succeed({"verify", "x.gic", "in"}).out, "14 of 14 files");
+  expect_part(program_.run({"verify", "x.gic", "in/foo.001.exr"}).out, "1 of ");
+  program_.succeed({"encode", "-o", "y.gic", "--stills", "in"});
+  expect_part(program_.succeed({"verify", "y.gic", "in"}).out, "14 of 14 files in 1 frame");
+  program_.succeed({"encode", "-o", "z.gic", "--frames-from", "foo.#", "in"});
+  expect_part(program_.succeed({"verify", "z.gic", "in"}).out, "14 of 14 files in 4 frames");
 }
 
 TEST_F(CliImages, RawFilesWithoutASidecar) {

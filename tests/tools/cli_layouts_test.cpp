@@ -229,8 +229,9 @@ TEST_P(CliLayouts, WhatAKindOfFileLacksIsNamed) {
       ADD_FAILURE() << texture.name;
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), Exit::bad_input);
-      expect_part(error.what(), fmt::format("x.dds: DDS files have no format {}; KTX2, EXR and raw",
-                                            find_format(format)->name));
+      expect_part(error.what(),
+                  fmt::format("x.dds: DDS files have no format {}; --files takes ktx2, exr or raw",
+                              find_format(format)->name));
     }
     EXPECT_TRUE(program_.files().empty());
     // A file of another format is not taken for one.

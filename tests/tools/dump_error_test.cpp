@@ -182,7 +182,7 @@ TEST_F(DumpError, RipmapsAndDeepData) {
     tiled.setTileDescription(Imf::TileDescription(8, 8, Imf::RIPMAP_LEVELS));
     const Imf::TiledOutputFile file(path_.c_str(), tiled);
   }
-  expect_error({"is ripmapped", "one level or mipmaps"});
+  expect_error({"is ripmapped", "with one level, or mipmapped"});
   header.setType(Imf::DEEPSCANLINE);
   header.setVersion(1);
   header.compression() = Imf::ZIPS_COMPRESSION;

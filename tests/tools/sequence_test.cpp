@@ -3,8 +3,11 @@
 #include "dump/error.h"
 #include "tools/dump_support.h"
 
+#include <gicodec/textures.h>
+
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
 
 namespace gicodec::tools {
@@ -12,12 +15,16 @@ namespace {
 
 std::string message_of(const std::vector<std::string>& paths, bool allow_gaps = false) {
   try {
-    (void)group_sequences(paths, allow_gaps);
+    (void)group_sequences(paths, {.allow_gaps = allow_gaps});
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), Exit::bad_input);
     return error.what();
   }
   return "";
+}
+
+std::string name_of_first(const Sequence& sequence) {
+  return sequence.file_name(sequence.frames[0].frame);
 }
 
 TEST(Sequence, GroupsByName) {
@@ -38,9 +45,7 @@ TEST(Sequence, NamesComeBack) {
                                  "color.000000000000000007.exr", "v1.2.exr", "color_7.exr",
                                  "color-0007.exr", "color0007.exr", "_0007.exr", "0007.exr"}) {
     const auto sequences = group_sequences({name});
-    EXPECT_EQ(frame_file_name(sequences[0].name, sequences[0].digits, sequences[0].frames[0].frame,
-                              sequences[0].extension, sequences[0].separator),
-              name);
+    EXPECT_EQ(name_of_first(sequences[0]), name);
   }
 }
 
@@ -65,7 +70,8 @@ TEST(Sequence, OtherSeparators) {
 TEST(Sequence, NumbersThatBelongToTheName) {
   const auto names = [](const std::vector<std::string>& paths) {
     std::vector<std::string> found;
-    for (const Sequence& sequence : group_sequences(paths, true)) found.push_back(sequence.name);
+    for (const Sequence& sequence : group_sequences(paths, {.allow_gaps = true}))
+      found.push_back(sequence.name);
     return found;
   };
   using Names = std::vector<std::string>;
@@ -83,7 +89,7 @@ TEST(Sequence, NumbersThatBelongToTheName) {
 
 TEST(Sequence, QuestionsNumbersThatAreNotLast) {
   const auto question = [](const std::vector<std::string>& paths) {
-    return question_of(group_sequences(paths, true));
+    return question_of(group_sequences(paths, {.allow_gaps = true}));
   };
   EXPECT_NE(question({"0_c.exr", "1_c.exr", "2_c.exr"}).find("put the number last"),
             std::string::npos);
@@ -113,6 +119,96 @@ TEST(Sequence, FramesTwice) {
   EXPECT_NE(message.find("a/color.0001.exr"), std::string::npos);
   EXPECT_NE(message.find("b/color.0001.exr"), std::string::npos);
   EXPECT_NE(message_of({"color.0000.exr", "color.exr"}, true), "");
+}
+
+TEST(Sequence, NegativeFrames) {
+  const auto sequences = group_sequences(
+      {"foo.-003.exr", "foo.-002.exr", "foo.-001.exr", "foo.000.exr", "foo.001.exr"});
+  ASSERT_EQ(sequences.size(), 1U);
+  EXPECT_EQ(sequences[0].name, "foo");
+  EXPECT_EQ(sequences[0].base, -3);
+  EXPECT_EQ(sequences[0].frames[0].frame, 0U);
+  EXPECT_EQ(sequences[0].frames[4].frame, 4U);
+  EXPECT_EQ(name_of_first(sequences[0]), "foo.-003.exr");
+  EXPECT_NE(message_of({"foo.-003.exr", "foo.-001.exr"}).find("foo.-002.exr"), std::string::npos);
+  // As printf() pads them.
+  const auto padded =
+      group_sequences({"foo.-010.exr", "foo.-009.exr", "foo.0000.exr"}, {.allow_gaps = true});
+  EXPECT_TRUE(padded[0].counts_sign);
+  for (const FrameFile& file : padded[0].frames) {
+    EXPECT_EQ(padded[0].file_name(file.frame), file.path);
+  }
+  EXPECT_NE(message_of({"foo.-01.exr", "foo.0000.exr"}, true).find("name it"), std::string::npos);
+  // Behind no other separator it is one.
+  EXPECT_EQ(group_sequences({"foo-003.exr"})[0].base, 0);
+  EXPECT_EQ(group_sequences({"-003.exr"})[0].name, "-003");
+}
+
+TEST(Sequence, NumbersThatAreNoFrames) {
+  using Names = std::vector<std::string>;
+  const auto names = [](const std::vector<std::string>& paths, const NumberOptions& options = {}) {
+    Names found;
+    for (const Sequence& sequence : group_sequences(paths, options)) {
+      found.push_back(sequence.name + (sequence.digits > 0 ? "#" : ""));
+    }
+    return found;
+  };
+  // UDIM tiles, versions, sides.
+  EXPECT_EQ(names({"irr_1001.exr", "irr_1002.exr", "irr_1011.exr"}),
+            (Names{"irr_1001", "irr_1002", "irr_1011"}));
+  EXPECT_EQ(names({"u1_v1.exr", "u1_v2.exr", "u2_v1.exr"}), (Names{"u1_v1", "u1_v2", "u2_v1"}));
+  EXPECT_EQ(names({"sky_1024x1024.exr", "sky_2048x2048.exr"}),
+            (Names{"sky_1024x1024", "sky_2048x2048"}));
+  EXPECT_EQ(names({"Layer-3.exr", "Lightmap-0.exr"}), (Names{"Layer-3", "Lightmap-0"}));
+  // One run.
+  EXPECT_EQ(names({"irr_1001.exr", "irr_1002.exr"}), Names{"irr#"});
+  EXPECT_EQ(names({"Layer-3.exr", "Layer-4.exr"}), Names{"Layer#"});
+  // As flags say.
+  EXPECT_EQ(names({"irr.0001.exr", "irr.0002.exr"}, {.stills = true}),
+            (Names{"irr.0001", "irr.0002"}));
+  EXPECT_EQ(names({"irr_1001.exr", "irr_1002.exr", "b_1.exr", "b_2.exr"}, {.pattern = "b_#"}),
+            (Names{"irr_1001", "irr_1002", "b#"}));
+  EXPECT_EQ(names({"u1_v1.exr", "u1_v2.exr"}, {.pattern = "*v##.exr"}), Names{"u1_v#"});
+  EXPECT_EQ(names({"u1_v1.exr", "u1_v2.exr"}, {.pattern = "*v#.dds"}), (Names{"u1_v1", "u1_v2"}));
+  EXPECT_THROW((void)names({"a_1.exr"}, {.pattern = "a_"}), Error);
+  // Stills are of the first frame.
+  const auto beside = group_sequences({"sky.exr", "irr.0007.exr", "irr.0008.exr"});
+  EXPECT_EQ(beside[0].frames[0].frame, 7U);
+  EXPECT_EQ(all_frames(beside), (std::vector<std::uint64_t>{7, 8}));
+  // As a container has them.
+  Sequence still{"irr_1001", 0, "exr", ".", 0, false, {}};
+  EXPECT_EQ(names({"irr_1001.exr"}, {.known = {still}}), Names{"irr_1001"});
+}
+
+TEST(Sequence, FilesOfOtherShapesAreStills) {
+  const TemporaryDirectory directory;
+  std::vector<std::string> paths, remarks;
+  for (const std::uint32_t side : {4U, 5U, 6U}) {
+    const Dump dump = random_dump(map_texture(Format::R16_SFLOAT, {side, 4, 1}, {8, 8, 1}), side);
+    paths.push_back(directory.path(fmt::format("a_{}.exr", side)));
+    write_dump(paths.back(), dump.info, dump.texels);
+  }
+  EXPECT_EQ(group_sequences(paths, {}, &remarks).size(), 3U);
+  ASSERT_EQ(remarks.size(), 1U);
+  EXPECT_NE(remarks[0].find("their shapes or formats differ; --frames-from \"a_#\""),
+            std::string::npos)
+      << remarks[0];
+  remarks.clear();
+  const Dump same = read_dump(paths[0]);
+  for (const std::string& path : paths) write_dump(path, same.info, same.texels, Existing::replace);
+  EXPECT_EQ(group_sequences(paths, {}, &remarks).size(), 1U);
+  ASSERT_EQ(remarks.size(), 1U);
+  EXPECT_NE(remarks[0].find("taken for those of frames; --stills"), std::string::npos);
+}
+
+TEST(Sequence, LinksToNothingAreLeftOut) {
+  const TemporaryDirectory directory;
+  std::ofstream(directory.path("a.exr")) << "x";
+  std::filesystem::create_symlink("nowhere", directory.path("b.exr"));
+  std::vector<std::string> remarks;
+  EXPECT_EQ(group_sequences({directory.path("")}, {}, &remarks).size(), 1U);
+  ASSERT_EQ(remarks.size(), 1U);
+  EXPECT_NE(remarks[0].find("b.exr: is a link to nothing"), std::string::npos);
 }
 
 TEST(Sequence, Directories) {

@@ -197,12 +197,6 @@ Encoder make_encoder(const BackendFlags& flags, const TextureDesc& desc, const s
     fail(Exit::usage, "texture {}: backend {} refuses{}: it takes {}", texture, flags.backend,
          given_settings(options.settings), allowed_settings(flags.backend));
   }
-  if (encoder.status() == Status::unsupported_format ||
-      encoder.status() == Status::unsupported_shape) {
-    fail(Exit::bad_input,
-         "texture {}: backend {} does not code blocks of {} {}; --backend zstd does", texture,
-         flags.backend, block_text(desc.block), record_text(desc.record));
-  }
   return take(std::move(encoder), fmt::format("texture {}: backend {}", texture, flags.backend));
 }
 

@@ -1,6 +1,7 @@
 #include "container_input.h"
 
 #include "cli.h"
+#include "dump/cure.h"
 #include "dump/error.h"
 #include "file_forms.h"
 #include "file_names.h"
@@ -58,9 +59,7 @@ ContainerInput::ContainerInput(const std::string& path, const DecoderFlags& deco
   for (const TextureEntry& entry : description().textures) {
     std::string why_not = no_dump(description(), entry);
     if (why_not.empty()) {
-      textures_.push_back(from_entry(entry, path_));
-      if (find_attribute(textures_.back().info.attributes, kTimeAttribute) != nullptr)
-        textures_.back().times = times_of(description());
+      textures_.push_back(stored(entry));
       continue;
     }
     StoredTexture& texture = textures_.emplace_back();
@@ -70,8 +69,29 @@ ContainerInput::ContainerInput(const std::string& path, const DecoderFlags& deco
     texture.no_dump = std::move(why_not);
   }
   selected_.assign(textures_.size(), true);
+  beside_.resize(textures_.size());
   prepare();
   if (source_->size() && !player_->finished()) find_missing();
+}
+
+StoredTexture ContainerInput::stored(const TextureEntry& entry) const {
+  StoredTexture texture = from_entry(entry, path_);
+  const bool timed = find_attribute(texture.info.attributes, kTimeAttribute) != nullptr;
+  if (timed) texture.times = times_of(description());
+  return texture;
+}
+
+void ContainerInput::read_metadata() {
+  for (std::size_t i = 0; i < textures_.size(); ++i) {
+    auto beside = player_->metadata(static_cast<std::uint8_t>(i));
+    if (beside.status() == Status::truncated) return;  // No packet can follow.
+    beside_[i] = take(std::move(beside),
+                      fmt::format("{}: metadata of texture {}", path_, textures_[i].name));
+    if (beside_[i].empty() || !textures_[i].no_dump.empty()) continue;
+    TextureEntry entry = description().textures[i];
+    entry.metadata.insert(entry.metadata.end(), beside_[i].begin(), beside_[i].end());
+    textures_[i] = stored(entry);
+  }
 }
 
 void ContainerInput::open() {
@@ -177,7 +197,11 @@ std::string ContainerInput::place_of_damage() const {
 void ContainerInput::fail_at(Status status) const {
   const ContainerPlayer::Where at = player_->where();
   if (!at.part) {
-    fail(exit_code(status), "{}: {}: {}", path_, place_of_damage(), to_string(status));
+    // A packet that takes more by itself.
+    const std::uint64_t usual = mebibytes(DecodeLimits{}.max_total_bytes - 1);
+    const bool more = status == Status::limit_exceeded && decoding_.memory < usual;
+    fail(exit_code(status), "{}: {}: {}{}", path_, place_of_damage(), to_string(status),
+         more && decoding_.memory_flag ? "; " + to_cure(Cure::more_memory, usual) : "");
   }
   const std::string there = where(at.frame, *at.part);
   if (status == Status::limit_exceeded) require_memory(at.memory - player_->memory(), there);
@@ -215,7 +239,7 @@ void ContainerInput::require_memory(std::uint64_t bytes, const std::string& wher
   fail(Exit::bad_input,
        "{}: decoding takes {} MiB with the textures before it, and {} are allowed{}", where,
        mebibytes(wanted), decoding_.memory,
-       decoding_.memory_flag ? fmt::format("; --max-memory {} allows it", mebibytes(wanted)) : "");
+       decoding_.memory_flag ? "; " + to_cure(Cure::more_memory, mebibytes(wanted)) : "");
 }
 
 void ContainerInput::describe_cut() {
@@ -258,8 +282,7 @@ std::string ContainerInput::where(std::uint64_t frame, TextureRegion part) const
 std::string require_complete(const ContainerInput& input, bool allowed) {
   if (!input.cut_off()) return "";
   if (allowed) return fmt::format("{}: {}", input.path(), input.missing());
-  fail(Exit::bad_input, "{}: {}; --allow-incomplete goes on with what is there", input.path(),
-       input.missing());
+  fail(Exit::bad_input, "{}: {}; {}", input.path(), input.missing(), to_cure(Cure::incomplete));
 }
 
 void require_whole(ContainerInput& input) {
@@ -340,8 +363,7 @@ void require_distinct_files(const ContainerInput& input) {
     const bool volumes = own != description.textures[*other].volume;
     fail(Exit::bad_input, "{}: textures {} and {} have files of the same names{}", input.path(),
          input.textures()[*other].name, texture.name,
-         volumes ? fmt::format("; --volume {} takes one volume alone{}",
-                               volume_choice(description, own),
+         volumes ? fmt::format("; {}{}", to_cure(Cure::one_volume, volume_choice(description, own)),
                                volume_choice(description, own) == volume_name(description, own)
                                    ? ""
                                    : ", by its number, since others have its name")
@@ -371,9 +393,7 @@ void select_dumps(ContainerInput& input, const std::string& volume) {
   }
   if (!why_not.empty()) {
     fail(Exit::bad_input, "{}: {}{}", input.path(), why_not,
-         other_volume.empty()
-             ? ""
-             : fmt::format("; --volume {} takes another volume alone", other_volume));
+         other_volume.empty() ? "" : "; " + to_cure(Cure::other_volume, other_volume));
   }
   require_distinct_files(input);
 }

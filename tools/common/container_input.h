@@ -38,6 +38,11 @@ class ContainerInput {
   /// Bytes read so far; at a pipe's end, all of it.
   [[nodiscard]] std::uint64_t bytes_read() const { return source_->bytes_read(); }
 
+  /// Reads what is kept of files beside the description, for programs that show or write files.
+  /// Call it before the functions below.
+  void read_metadata();
+  /// After read_metadata(): a texture's.
+  [[nodiscard]] const Metadata& beside(std::size_t texture) const { return beside_[texture]; }
   /// Makes all textures decode to files of that kind (file_forms.h).
   void set_files(ImageKind kind);
   /// Makes no texture's files have an attribute.
@@ -109,6 +114,7 @@ class ContainerInput {
     std::uint64_t bytes_read_ = 0;
   };
   void open();
+  [[nodiscard]] StoredTexture stored(const TextureEntry& entry) const;
   /// Sets the player's selection, and the layouts of dumps.
   void prepare();
   void rewind();
@@ -126,7 +132,8 @@ class ContainerInput {
   std::unique_ptr<CountingSource> source_;
   std::optional<ContainerPlayer> player_;
   std::vector<StoredTexture> textures_;
-  std::vector<bool> selected_;  ///< by texture
+  std::vector<Metadata> beside_;  ///< by texture
+  std::vector<bool> selected_;    ///< by texture
   std::optional<std::uint64_t> first_frame_, last_frame_;
   std::optional<std::uint64_t> sought_;  ///< frame of seek()
   bool damaged_ = false;

@@ -8,9 +8,11 @@
 #include <gicodec/io.h>
 
 #include <cerrno>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -18,15 +20,18 @@ namespace gicodec::tools {
 
 class ContainerOutput {
  public:
-  /// `existing`: what finish() may replace.
+  /// `existing`: what finish() may replace. `beside`: metadata beside the description, by texture.
   ContainerOutput(const std::string& path, const ContainerDescription& description,
-                  Existing existing = Existing::container)
+                  Existing existing = Existing::container, std::span<const Metadata> beside = {})
       : name_(path == "-" ? "standard output" : path),
         file_(path, existing, AtomicFile::Temporary::partial),
         sink_(file_.stream()) {
     auto writer = ContainerWriter::create(sink_, description);
     require(writer.status());
     writer_.emplace(*std::move(writer));
+    for (std::size_t i = 0; i < beside.size(); ++i) {
+      require(writer_->add_metadata(static_cast<std::uint8_t>(i), beside[i]));
+    }
   }
   /// The packet is in the file afterwards, even if the program is killed.
   void add(std::uint64_t frame, const Packet& packet) { require(writer_->add(frame, packet)); }

@@ -1,5 +1,6 @@
 #include "file_forms.h"
 
+#include "dump/cure.h"
 #include "dump/error.h"
 #include "dump/texture_file.h"
 
@@ -30,10 +31,19 @@ bool can_have(ImageKind kind, const Attribute& attribute) {
   return kind != ImageKind::exr || exr_has_attribute(attribute);
 }
 
+/// Makes an image of a file the one image of its own.
+void own_file(StoredTexture& texture) {
+  texture.file = texture.name;
+  texture.info.image.clear();
+  texture.info.place = {};
+  texture.info.head = true;
+}
+
 }  // namespace
 
 void set_files(StoredTexture& texture, ImageKind kind) {
   if (kind_of(texture) == kind) return;
+  if (kind == ImageKind::raw) own_file(texture);
   texture.extension = std::ranges::find(kForms, kind, &Form::kind)->ending;
   std::set<std::string> unsaid;
   const auto remove = [&](const Attribute& attribute) {
@@ -66,9 +76,9 @@ void require_format(const StoredTexture& texture, const std::string& path) {
     if (has_format(form.kind, format))
       others += (others.empty() ? "" : ", ") + std::string(form.ending);
   }
-  fail(Exit::bad_input,
-       "{}: texture {} is of format {}, which {} files cannot have; --files takes {} for it", path,
-       texture.name, find_format(format)->name, texture.extension, others);
+  fail(Exit::bad_input, "{}: texture {} is of format {}, which {} files cannot have; {}", path,
+       texture.name, find_format(format)->name, texture.extension,
+       to_cure(Cure::other_files, others));
 }
 
 }  // namespace gicodec::tools

@@ -25,8 +25,8 @@ constexpr const char* kNothing = "%-";  ///< stands for an empty text
 
 /// Bytes of the first character of `text`; 0 if a terminal does not show it as it is.
 std::size_t shown_size(std::string_view text) {
-  constexpr std::size_t kMost = 4;
-  for (std::size_t size = 1; size <= std::min(kMost, text.size()); ++size) {
+  constexpr std::size_t kMax = 4;
+  for (std::size_t size = 1; size <= std::min(kMax, text.size()); ++size) {
     if (printable(text.substr(0, size)) == text.substr(0, size)) return size;
   }
   return 0;

@@ -1,4 +1,5 @@
 // What the headers of a sequence's files make textures of.
+#include "dump/cure.h"
 #include "dump/error.h"
 #include "file_names.h"
 #include "stored_texture.h"
@@ -59,6 +60,8 @@ StoredTexture stored_image(const Sequence& sequence, DumpInfo info) {
   texture.digits = sequence.digits;
   texture.extension = written_extension(sequence);
   texture.separator = sequence.separator;
+  texture.base = sequence.base;
+  texture.counts_sign = sequence.counts_sign;
   texture.info = std::move(info);
   if (const auto* lost = find_attribute(texture.info.attributes, kLossyAttribute)) {
     texture.lossy = lost->value;
@@ -83,8 +86,8 @@ std::vector<StoredTexture> inspect(const Sequence& sequence, Hints hints) {
       lost.resize(textures.size());
     }
     if (infos.size() != textures.size()) {
-      fail(Exit::bad_input, "{}: has {} images, and {} has {}; give files of one kind at a time",
-           file.path, infos.size(), first.path, textures.size());
+      fail(Exit::bad_input, "{}: has {} images, and {} has {}; {}", file.path, infos.size(),
+           first.path, textures.size(), to_cure(Cure::one_kind));
     }
     for (std::size_t i = 0; i < infos.size(); ++i) {
       note_lost(textures[i], infos[i], file.path, lost[i]);

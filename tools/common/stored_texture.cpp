@@ -10,6 +10,7 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <set>
 #include <system_error>
 
@@ -17,6 +18,8 @@ namespace gicodec::tools {
 namespace {
 
 constexpr unsigned kMaxDigits = 18;
+/// Behind "base": digits count the sign.
+constexpr std::string_view kSign = " sign";
 
 std::string attribute_text(const Attribute& attribute) {
   return attribute.type.empty() ? "" : attribute.type + " " + attribute.value;
@@ -132,9 +135,9 @@ void settle_attributes(StoredTexture& texture, Attributes read, const std::strin
 }
 
 bool is_known(std::string_view key) {
-  constexpr std::array<std::string_view, 13> kKeys = {
-      "digits",  "file",       "image",   "extension", "separator", "channels", "slots",
-      "padding", "file bytes", "encoder", "dropped",   "lossy",     "inactive"};
+  constexpr std::array<std::string_view, 14> kKeys = {
+      "digits", "base",    "file",       "image",   "extension", "separator", "channels",
+      "slots",  "padding", "file bytes", "encoder", "dropped",   "lossy",     "inactive"};
   return key.starts_with("attribute:") || key.starts_with("attribute@") ||
          key.starts_with("channel:") || std::ranges::find(kKeys, key) != kKeys.end();
 }
@@ -165,7 +168,8 @@ DumpInfo StoredTexture::decoded_info(std::uint64_t frame) const {
 }
 
 std::string StoredTexture::file_name(std::uint64_t frame) const {
-  return frame_file_name(file_stem(*this), digits, frame, extension, separator);
+  return frame_file_name(file_stem(*this), digits, static_cast<std::int64_t>(frame) + base,
+                         extension, separator, counts_sign);
 }
 
 std::string StoredTexture::lacks() const {
@@ -181,7 +185,7 @@ std::string StoredTexture::loss() const {
 
 bool of_one_file(const StoredTexture& a, const StoredTexture& b) {
   return a.made_of_files && b.made_of_files && a.file == b.file && a.extension == b.extension &&
-         a.separator == b.separator && a.digits == b.digits;
+         a.separator == b.separator && a.digits == b.digits && a.counts_sign == b.counts_sign;
 }
 
 TextureEntry to_entry(const StoredTexture& texture) {
@@ -196,6 +200,10 @@ TextureEntry to_entry(const StoredTexture& texture) {
   }
   metadata.emplace_back("extension", texture.extension);
   if (texture.separator != ".") metadata.emplace_back("separator", texture.separator);
+  if (texture.base != 0) {
+    metadata.emplace_back("base",
+                          fmt::format("{}{}", texture.base, texture.counts_sign ? kSign : ""));
+  }
   const Record& record = texture.info.desc.record;
   const Layout& layout = texture.info.desc.layout;
   metadata.emplace_back("channels", to_string(texture.info.channels, record.format));
@@ -225,6 +233,19 @@ TextureEntry to_entry(const StoredTexture& texture) {
                           attribute_text(change.attribute));
   }
   return entry;
+}
+
+Metadata take_beside(Metadata& metadata, std::size_t most) {
+  const auto stays = [&](const auto& pair) {
+    const auto& [key, value] = pair;
+    if (key.starts_with("attribute@")) return false;
+    const bool may_go = key.starts_with("attribute:") || key == "inactive" || key == "dropped";
+    return !may_go || value.size() <= most;
+  };
+  const auto first = std::stable_partition(metadata.begin(), metadata.end(), stays);
+  Metadata beside(std::make_move_iterator(first), std::make_move_iterator(metadata.end()));
+  metadata.erase(first, metadata.end());
+  return beside;
 }
 
 bool is_file_name(const std::string& name) {
@@ -260,6 +281,15 @@ StoredTexture from_entry(const TextureEntry& entry, const std::string& path) {
       read_number(value, texture.digits, key, where);
       if (texture.digits > kMaxDigits) {
         fail(Exit::bad_input, "{}: metadata digits is damaged", where);
+      }
+    } else if (key == "base") {
+      texture.counts_sign = value.ends_with(kSign);
+      const std::string_view text(value);
+      read_number(text.substr(0, text.size() - (texture.counts_sign ? kSign.size() : 0)),
+                  texture.base, key, where);
+      constexpr std::int64_t kLeast = -1'000'000'000'000'000'000;
+      if (texture.base > 0 || texture.base < kLeast) {
+        fail(Exit::bad_input, "{}: metadata base is damaged", where);
       }
     } else if (key == "file") {
       texture.file = value;

@@ -33,6 +33,8 @@ struct StoredTexture {
   unsigned digits = 4;
   std::string extension = "exr";
   std::string separator = ".";
+  std::int64_t base = 0;                ///< the number of frame 0's file; not above 0
+  bool counts_sign = false;             ///< Sequence::counts_sign
   DumpInfo info;                        ///< of the first frame
   std::vector<FrameAttribute> changes;  ///< ascending by frame
   std::optional<FrameTimes> times;      ///< gives gicodec:time of each frame
@@ -72,7 +74,10 @@ struct StoredTexture {
 /// directories, not hidden.
 [[nodiscard]] bool is_file_name(const std::string& name);
 
-/// The container's entry of a texture; does not set its volume.
+/// Takes what belongs beside a container's description (ContainerWriter::add_metadata()): what is
+/// of one frame, and of attributes, inactive probes and losses what has more than `most` bytes.
+[[nodiscard]] Metadata take_beside(Metadata& metadata, std::size_t most);
+/// The container's entry of a texture with all its metadata; does not set its volume.
 [[nodiscard]] TextureEntry to_entry(const StoredTexture& texture);
 /// The inverse. An entry without metadata gets frame numbers of four digits, default channels, the
 /// attributes of make_info() and no padding. Throws for malformed metadata.

@@ -1,10 +1,10 @@
 // DDS files (Microsoft, "DDS_HEADER structure" and "DDS_HEADER_DXT10 structure").
+#include "dump/cure.h"
 #include "dump/error.h"
 #include "dump/texture_file.h"
 
 #include <algorithm>
 #include <array>
-#include <bit>
 
 namespace gicodec::tools {
 namespace {
@@ -218,9 +218,7 @@ TextureHead parse(std::span<const std::byte> bytes, const std::string& path) {
       return fmt::format("{} texels", to_string(head.texels));
     }
     if (head.faces == 0 || (head.faces > 1 && head.volume)) return "a cube without faces, or deep";
-    const std::uint32_t side =
-        std::max({head.texels.x, head.texels.y, head.volume ? head.texels.z : 1U});
-    if (head.levels > static_cast<unsigned>(std::bit_width(side))) {
+    if (head.levels > max_levels(head)) {
       return fmt::format("{} levels of {} texels", head.levels, to_string(head.texels));
     }
     return "";
@@ -311,8 +309,8 @@ std::vector<std::byte> dds_file(std::span<const Dump> images, const std::string&
     head = head_of(images, path);
     file = implied_header(head, record);
     if (file.empty()) {
-      fail(Exit::bad_input, "{}: DDS files have no format {}; KTX2, EXR and raw files do", path,
-           find_format(record.format)->name);
+      fail(Exit::bad_input, "{}: DDS files have no format {}; {}", path,
+           find_format(record.format)->name, to_cure(Cure::other_files, "ktx2, exr or raw"));
     }
   }
   const std::size_t start = file.size();

@@ -1,6 +1,7 @@
 #include "dump/dump.h"
 
 #include "dump/block_place.h"
+#include "dump/cure.h"
 #include "dump/error.h"
 #include "dump/internal.h"
 #include "dump/text.h"
@@ -68,13 +69,12 @@ ImageKind require_image_kind(const std::string& path) {
            std::make_error_code(std::errc::no_such_file_or_directory).message());
     }
     if (!is_container_file(path)) fail(Exit::bad_input, "{}: is not a .gic container", path);
-    fail(Exit::bad_input, "{}: is a container; \"gicodec decode {} -o DIR\" makes dumps of it",
-         path, path);
+    fail(Exit::bad_input, "{}: is a container; {}", path, to_cure(Cure::decode_first, path));
   }
   fail(Exit::bad_input,
        "{}: is named like no image that is read: .exr, .dds, .ktx2, .raw, .bin, .png, .tif, .tiff, "
-       ".dpx; name the dumps, or their folder",
-       path);
+       ".dpx; {}",
+       path, to_cure(Cure::name_dumps));
 }
 
 std::vector<DumpInfo> read_dump_infos(const std::string& path, const Hints& hints) {
@@ -293,10 +293,11 @@ void fail_sample(const DumpInfo& info, const Component& component, SampleType ty
           ? fmt::format("is not n/{}, so it is no {}-bit code", max_code(component), component.bits)
           : fmt::format("is no {}-bit code; files of this format hold codes 0 to {}",
                         component.bits, max_code(component));
-  const std::string cure = type == SampleType::uint32
-                               ? ""
-                               : fmt::format("; --vk-format {} keeps such values as they are",
-                                             (type == SampleType::half ? kHalves : kFloats)[index]);
+  const std::string cure =
+      type == SampleType::uint32
+          ? ""
+          : "; " +
+                to_cure(Cure::keep_values, (type == SampleType::half ? kHalves : kFloats)[index]);
   fail(Exit::bad_input, "{}: channel {}, {}: {} {}{}", path, letter(component), place, value, fault,
        cure);
 }

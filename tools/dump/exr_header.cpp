@@ -1,5 +1,6 @@
 #include "dump/exr_header.h"
 
+#include "dump/cure.h"
 #include "dump/error.h"
 #include "dump/internal.h"
 
@@ -105,17 +106,16 @@ class HeaderWalk {
  private:
   [[noreturn]] void fail_deep(const std::string& part) const {
     fail(Exit::bad_input,
-         "{}: {}holds deep data, of several samples a texel, which no texture is; flatten it, as "
-         "oiiotool --flatten does",
-         path_, part.empty() ? "" : fmt::format("part {} ", part));
+         "{}: {}holds deep data, of several samples a texel, which no texture is; {}", path_,
+         part.empty() ? "" : fmt::format("part {} ", part), to_cure(Cure::flatten));
   }
   /// A file of three lines in place of a large one.
-  [[nodiscard]] const char* pointer() {
+  [[nodiscard]] std::string pointer() {
     std::rewind(file_.get());
     std::array<char, 24> start{};
     const std::size_t got = std::fread(start.data(), 1, start.size(), file_.get());
     return std::string_view(start.data(), got).starts_with("version https://git-lfs")
-               ? ", but a pointer of Git LFS to one; \"git lfs pull\" fetches it"
+               ? ", but a pointer of Git LFS to one; " + to_cure(Cure::fetch_lfs)
                : "";
   }
 
@@ -147,10 +147,8 @@ class HeaderWalk {
     }
     // Its parts are packed, so that their sizes are not known here.
     if (type == "idmanifest" || (type == "chlist" && name != "channels")) {
-      fail(Exit::bad_input,
-           "{}: attribute {} of type {} is not supported; write the file without it, as "
-           "oiiotool --eraseattrib does",
-           path_, name, type);
+      fail(Exit::bad_input, "{}: attribute {} of type {} is not supported; {}", path_, name, type,
+           to_cure(Cure::erase_attribute));
     }
     std::string bytes = take(static_cast<std::size_t>(size));
     if (type != "chlist" && !is_sound_exr_value(type, bytes)) damaged(name);
@@ -179,10 +177,8 @@ class HeaderWalk {
       damaged("tiles");
     }
     if (levels == kRipmaps) {
-      fail(Exit::bad_input,
-           "{}: is ripmapped: it has levels of every width with every height; write it with one "
-           "level or mipmaps, as maketx does",
-           path_);
+      fail(Exit::bad_input, "{}: is ripmapped: it has levels of every width with every height; {}",
+           path_, to_cure(Cure::one_level));
     }
     part_.round_up = rounding == 1;
     part_.levels = levels == kMipmaps ? 2 : 1;  // Their number follows from the window.
@@ -249,15 +245,13 @@ class HeaderWalk {
     const std::size_t number = static_cast<unsigned char>(bytes[0]);
     constexpr std::size_t kHtj2k256 = 10, kHtj2k32 = 11;
     if (number == kHtj2k256 || number == kHtj2k32) {
-      fail(
-          Exit::bad_input,
-          "{}: its compression, HTJ2K, is newer than the OpenEXR that reads it here; write it with "
-          "ZIP or PIZ, as exrconv or oiiotool --compression zip do",
-          path_);
+      fail(Exit::bad_input,
+           "{}: its compression, HTJ2K, is newer than the OpenEXR that reads it here; {}", path_,
+           to_cure(Cure::write_zip));
     }
     if (number >= kLines.size()) {
-      fail(Exit::bad_input, "{}: its compression, number {}, is unknown; write it with ZIP or PIZ",
-           path_, number);
+      fail(Exit::bad_input, "{}: its compression, number {}, is unknown; {}", path_, number,
+           to_cure(Cure::write_zip));
     }
     lines_ = std::max(lines_, kLines[number]);
     dwa_ = dwa_ || number >= 8;

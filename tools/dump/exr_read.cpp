@@ -1,5 +1,7 @@
+#include "dump/cure.h"
 #include "dump/error.h"
 #include "dump/exr_images.h"
+#include "dump/exr_types.h"
 
 #include <Imath/ImathBox.h>
 #include <OpenEXR/ImfFrameBuffer.h>
@@ -16,12 +18,6 @@
 
 namespace gicodec::tools {
 namespace {
-
-Imf::PixelType pixel_type(SampleType type) {
-  return type == SampleType::uint32 ? Imf::UINT : type == SampleType::half ? Imf::HALF : Imf::FLOAT;
-}
-
-constexpr std::size_t sample_bytes(SampleType type) { return type == SampleType::half ? 2 : 4; }
 
 /// Adds one channel's codes to the texels.
 void add_channel(Dump& dump, std::size_t index, const char* sample, const std::string& path) {
@@ -58,15 +54,12 @@ void add_values(Dump& dump, const std::vector<std::vector<char>>& planes, const 
     const auto codes = shared_exponent_codes(types, samples);
     if (!codes) {
       const bool half = std::ranges::count(types, SampleType::half) == 3;
-      fail(Exit::bad_input,
-           "{}: {}: R, G and B of {}, {} and {} are no texel of {}; --vk-format {} keeps them as "
-           "they are",
-           path,
+      fail(Exit::bad_input, "{}: {}: R, G and B of {}, {} and {} are no texel of {}; {}", path,
            to_string(locate(dump.info.desc, static_cast<std::uint32_t>(i % width),
                             static_cast<std::uint32_t>(i / width))),
            sample_text(types[0], samples[0]), sample_text(types[1], samples[1]),
            sample_text(types[2], samples[2]), find_format(record.format)->name,
-           half ? "R16G16B16A16_SFLOAT" : "R32G32B32_SFLOAT");
+           to_cure(Cure::keep_values, half ? "R16G16B16A16_SFLOAT" : "R32G32B32_SFLOAT"));
     }
     for (std::size_t c = 0; c < codes->size(); ++c) {
       store_component(&dump.texels[i * record.bytes], record.bytes, record.components[c],

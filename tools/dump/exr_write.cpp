@@ -1,4 +1,5 @@
 #include "dump/error.h"
+#include "dump/exr_types.h"
 #include "dump/file.h"
 #include "dump/internal.h"
 
@@ -43,10 +44,6 @@ class MemoryFile final : public Imf::OStream {
   std::size_t position_ = 0;
 };
 
-Imf::PixelType pixel_type(SampleType type) {
-  return type == SampleType::uint32 ? Imf::UINT : type == SampleType::half ? Imf::HALF : Imf::FLOAT;
-}
-
 bool keeps_every_bit(Imf::Compression compression) {
   switch (compression) {
     case Imf::NO_COMPRESSION:
@@ -65,9 +62,9 @@ std::vector<char> channel_samples(const DumpInfo& info, std::span<const std::byt
   const std::size_t texel_bytes = info.desc.record.bytes;
   const Component& component = info.desc.record.components[index];
   const SampleType type = info.channels.types[index];
-  const std::size_t sample_bytes = type == SampleType::half ? 2 : 4;
+  const std::size_t bytes = sample_bytes(type);
   const std::size_t count = texels.size() / texel_bytes;
-  std::vector<char> samples(count * sample_bytes);
+  std::vector<char> samples(count * bytes);
   for (std::size_t i = 0; i < count; ++i) {
     const std::byte* texel = &texels[i * texel_bytes];
     const std::uint32_t code = load_component(texel, texel_bytes, component);
@@ -76,7 +73,7 @@ std::vector<char> channel_samples(const DumpInfo& info, std::span<const std::byt
             ? to_sample(type, component, code)
             : shared_exponent_sample(
                   type, code, load_component(texel, texel_bytes, info.desc.record.components[3]));
-    std::memcpy(&samples[i * sample_bytes], &sample, sample_bytes);
+    std::memcpy(&samples[i * bytes], &sample, bytes);
   }
   return samples;
 }
@@ -105,7 +102,8 @@ struct Part {
 };
 
 /// Two whole numbers of an attribute, from `least` to `most`.
-V2i v2i_of(const Attributes& attributes, const char* name, int least, int most, V2i otherwise) {
+V2i v2i_of(const Attributes& attributes, const char* name, int least, int most,
+           const V2i& otherwise) {
   if (find_attribute(attributes, name) == nullptr) return otherwise;
   const auto values = find_floats(attributes, name, 2);
   const auto fits = [&](float value) {

@@ -1,5 +1,6 @@
 #include "dump/file.h"
 
+#include "dump/cure.h"
 #include "dump/error.h"
 
 #include <fcntl.h>
@@ -124,12 +125,9 @@ int rename_to(const std::string& from, const std::string& to, Existing existing)
 
 [[noreturn]] void fail_existing(const std::string& path, Existing existing) {
   if (existing == Existing::container) {
-    fail(Exit::io,
-         "{}: exists and is no .gic container; name another output, as in -o x.gic, or "
-         "remove it first",
-         path);
+    fail(Exit::io, "{}: exists and is no .gic container; {}", path, to_cure(Cure::name_container));
   }
-  fail(Exit::io, "{}: exists; --overwrite replaces it", path);
+  fail(Exit::io, "{}: exists; {}", path, to_cure(Cure::overwrite));
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "dump/image.h"
 
+#include "dump/cure.h"
 #include "dump/error.h"
 #include "dump/file.h"
 #include "dump/internal.h"
@@ -194,10 +195,8 @@ std::vector<Dump> read_image(const std::string& path, ImageKind kind, const Hint
   own.format = format_of(head, stored, hints);
   const auto others = resolve(dump.info, image_found, own, path);
   if (!others.empty() && hints.channels.empty()) {
-    fail(Exit::bad_input,
-         "{}: channel {} does not belong to {}; --channels R=NAME,... picks those to keep, and "
-         "without --vk-format all are kept",
-         path, others.front().name, find_format(dump.info.desc.record.format)->name);
+    fail(Exit::bad_input, "{}: channel {} does not belong to {}; {}", path, others.front().name,
+         find_format(dump.info.desc.record.format)->name, to_cure(Cure::pick_channels));
   }
   for (const FoundChannel& channel : others) dump.info.lost.push_back("channel " + channel.name);
   const auto lose_others = [&](int count, const char* what) {
@@ -216,10 +215,8 @@ std::vector<Dump> read_image(const std::string& path, ImageKind kind, const Hint
       fail(Exit::bad_input, "{}: integer samples do not hold {}", path, format.name);
     }
     if (stored.scaled && component.bits > 8 * stored.bytes) {
-      fail(Exit::bad_input,
-           "{}: holds {} bits per channel, too few for the {} of {}; write it with 16 bits or as "
-           "EXR, or keep them as --vk-format R8G8B8A8_UNORM",
-           path, 8 * stored.bytes, component.bits, format.name);
+      fail(Exit::bad_input, "{}: holds {} bits per channel, too few for the {} of {}; {}", path,
+           8 * stored.bytes, component.bits, format.name, to_cure(Cure::more_bits));
     }
   }
   if (!texels) return {std::move(dump)};

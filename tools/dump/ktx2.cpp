@@ -1,4 +1,5 @@
 // KTX2 files (Khronos, "KTX File Format Specification, Version 2").
+#include "dump/cure.h"
 #include "dump/error.h"
 #include "dump/internal.h"
 #include "dump/ktx2_format.h"
@@ -9,7 +10,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <numeric>
 
 namespace gicodec::tools {
@@ -37,10 +37,8 @@ bool is_ktx2(std::span<const std::byte> fixed) {
 }
 
 [[noreturn]] void fail_basis(const std::string& path, std::string_view what) {
-  fail(Exit::bad_input,
-       "{}: holds {}, which is made for transcoding; make BC7, ASTC or RGBA of it first, as "
-       "KTX-Software's \"ktx transcode\" does",
-       path, what);
+  fail(Exit::bad_input, "{}: holds {}, which is made for transcoding; {}", path, what,
+       to_cure(Cure::transcode));
 }
 
 /// `fixed`: the first kFixedBytes bytes of a file.
@@ -49,28 +47,24 @@ TextureHead parse(std::span<const std::byte> fixed, const std::string& path) {
   const std::uint32_t scheme = word_at(fixed, kScheme);
   if (scheme == static_cast<std::uint32_t>(Scheme::basis_lz)) fail_basis(path, "BasisLZ");
   if (scheme > static_cast<std::uint32_t>(Scheme::zlib)) {
-    fail(Exit::bad_input,
-         "{}: is supercompressed by scheme {}, which is unknown; write it without, since a "
-         "container compresses it",
-         path, scheme);
+    fail(Exit::bad_input, "{}: is supercompressed by scheme {}, which is unknown; {}", path, scheme,
+         to_cure(Cure::write_plain));
   }
   head.scheme = static_cast<Scheme>(scheme);
   const std::uint32_t depth = word_at(fixed, kDepth), layers = word_at(fixed, kLayers);
   if (depth > 0 && layers > 0) {
-    fail(Exit::bad_input, "{}: is an array of 3D textures; write a file for each", path);
+    fail(Exit::bad_input, "{}: is an array of 3D textures; {}", path, to_cure(Cure::split_array));
   }
   head.volume = depth > 0;
   head.texels = {word_at(fixed, kWidth), std::max(1U, word_at(fixed, kHeight)),
                  std::max({1U, depth, layers})};
   head.levels = std::max(1U, word_at(fixed, kLevels));
   head.faces = word_at(fixed, kFaces);
-  const std::uint32_t side =
-      std::max({head.texels.x, head.texels.y, head.volume ? head.texels.z : 1U});
   std::string fault;
   if (head.texels.x == 0) fault = "a width of 0";
   if (head.faces != 1 && (head.faces != 6 || head.volume))
     fault = fmt::format("{} faces", head.faces);
-  if (head.levels > static_cast<unsigned>(std::bit_width(side))) {
+  if (head.levels > max_levels(head)) {
     fault = fmt::format("{} levels of {} texels", head.levels, to_string(head.texels));
   }
   if (!fault.empty()) fail(Exit::bad_input, "{}: its KTX2 header is damaged: {}", path, fault);
@@ -311,7 +305,7 @@ KeptHead kept_head(std::span<const Dump> images, const std::string& path) {
 /// The levels at the places that a kept head says. Throws if they have other sizes.
 std::vector<StoredLevel> levels_of(const KeptHead& kept, std::span<const StoredLevel> levels,
                                    const std::string& path) {
-  const auto stored = stored_levels(kept.bytes, kept.head.levels);
+  auto stored = stored_levels(kept.bytes, kept.head.levels);
   if (!std::ranges::equal(stored, levels, {}, &StoredLevel::bytes, &StoredLevel::bytes)) {
     fail(Exit::bad_input, "{}: attribute {} is of another texture", path, kKtx2Head);
   }

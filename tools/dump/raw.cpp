@@ -1,4 +1,5 @@
 // Raw files: texels, and a JSON sidecar that describes them (gicodec(1), "Dumps").
+#include "dump/cure.h"
 #include "dump/error.h"
 #include "dump/geometry_attributes.h"
 #include "dump/sequence.h"
@@ -180,10 +181,8 @@ TextureHead read_raw_head(TextureFile& file, const Hints& hints) {
   if (!has_own && !has_shared) {
     const bool described = hints.format && hints.extent;
     if (!hints.desc && !described) {
-      fail(Exit::bad_input,
-           "{}: has no sidecar {}, or {} for all frames, that describes it; --vk-format and "
-           "--extent do without one",
-           file.path(), own, shared);
+      fail(Exit::bad_input, "{}: has no sidecar {}, or {} for all frames, that describes it; {}",
+           file.path(), own, shared, to_cure(Cure::describe_raw));
     }
     head.texels = hints.desc ? texels_of(*hints.desc) : *hints.extent;
     head.volume = !hints.desc && head.texels.z > 1;

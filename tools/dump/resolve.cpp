@@ -1,4 +1,5 @@
 // Determines the texture of an image: from attributes, hints, channels and size.
+#include "dump/cure.h"
 #include "dump/error.h"
 #include "dump/geometry_attributes.h"
 #include "dump/internal.h"
@@ -124,8 +125,8 @@ class Resolver {
     for (const Attribute& attribute : own) {
       const Attribute* stored = find_attribute(info_.attributes, attribute.name);
       if (stored == nullptr || same_meaning(*stored, attribute)) continue;
-      fail(Exit::bad_input, "{}: says that {} is {}, but by {} it is {}; check --layout and --grid",
-           path_, attribute.name, stored->value, hints_.agreed, attribute.value);
+      fail(Exit::bad_input, "{}: says that {} is {}, but by {} it is {}; {}", path_, attribute.name,
+           stored->value, hints_.agreed, attribute.value, to_cure(Cure::fix_layout));
     }
   }
 
@@ -151,8 +152,7 @@ class Resolver {
     if (!found.channels.empty()) return format_from_channels(found.channels);
     if (found.format) return *found.format;
     fail(Exit::bad_input, "{}: its format, {}, is unknown; {}", path_, found.format_name,
-         fits_a_format(found) ? "--vk-format reads its texels as a known format of as many bytes, "
-                                "and every bit comes back"
+         fits_a_format(found) ? to_cure(Cure::read_as_format)
                               : "write it in another, since no known format has as many bytes");
   }
 
@@ -184,9 +184,10 @@ class Resolver {
       return floats_of(*types.begin())[count];
     }
     fail(Exit::bad_input,
-         "{}: its channels {} do not determine a format; use --vk-format, and where the channels "
+         "{}: its channels {} do not determine a format; give --vk-format, and where the channels "
          "have other names than R, G, B, A, {}",
-         path_, listed(found, &FoundChannel::name), mapping_for(found, "RGB"));
+         path_, listed(found, &FoundChannel::name),
+         to_cure(Cure::map_channels, mapping_for(found, "RGB")));
   }
 
   /// "--channels R=irr.R,G=irr.G", a suggestion from the file's channel names.
@@ -236,18 +237,16 @@ class Resolver {
           for (const Component& each : format.record.used()) {
             if (letter(each) != 'A' && has_channel(info_.channels, each)) letters += letter(each);
           }
-          fail(Exit::bad_input, "{}: channel {} of {} is missing; its channels are {}: use {}",
-               path_, letter(component), format.name, listed(found, &FoundChannel::name),
-               mapping_for(found, letters));
+          fail(Exit::bad_input, "{}: channel {} of {} is missing; its channels are {}; {}", path_,
+               letter(component), format.name, listed(found, &FoundChannel::name),
+               to_cure(Cure::map_channels, mapping_for(found, letters)));
         }
         info_.channels.alpha = false;
         continue;
       }
       if (!can_hold(info_.channels, at->type, component, format.record)) {
-        fail(Exit::bad_input,
-             "{}: channel {} is {}, which does not hold {}; without --vk-format "
-             "it is kept as it is",
-             path_, at->name, to_string(at->type), format.name);
+        fail(Exit::bad_input, "{}: channel {} is {}, which does not hold {}; {}", path_, at->name,
+             to_string(at->type), format.name, to_cure(Cure::leave_format_out));
       }
       info_.channels.types[i] = at->type;
       info_.channels.names[i] = wanted == std::string{letter(component)} ? "" : wanted;
@@ -271,9 +270,7 @@ class Resolver {
     }
     const Attribute* found = attribute(kGrid, "v3i");
     if (found == nullptr) {
-      fail(Exit::bad_input,
-           "{}: no attribute {}; use --grid for probes, or --block 8x8x1 for another texture",
-           path_, kGrid);
+      fail(Exit::bad_input, "{}: no attribute {}; {}", path_, kGrid, to_cure(Cure::grid_or_block));
     }
     std::string text = found->value;
     std::replace(text.begin(), text.end(), ' ', 'x');
@@ -294,7 +291,8 @@ class Resolver {
     std::replace(text.begin(), text.end(), ' ', 'x');
     const auto sides = grid_from_string(text);
     if (!sides || sides->x > most || sides->y > most || sides->z > most) {
-      fail(Exit::bad_input, "{}: {} is {}, out of range; use {}", path_, name, found->value, flag);
+      fail(Exit::bad_input, "{}: {} is {}, out of range; {}", path_, name, found->value,
+           to_cure(Cure::give_flag, flag));
     }
     return sides;
   }
@@ -323,8 +321,10 @@ class Resolver {
     if (found == nullptr) return std::nullopt;
     std::uint8_t value = 0;
     const char* const end = found->value.data() + found->value.size();
-    if (std::from_chars(found->value.data(), end, value).ptr != end || value > kMaxBlockSide) {
-      fail(Exit::bad_input, "{}: {} is {}, out of range; use {}", path_, name, found->value, flag);
+    const auto parsed = std::from_chars(found->value.data(), end, value);
+    if (parsed.ec != std::errc{} || parsed.ptr != end || value > kMaxBlockSide) {
+      fail(Exit::bad_input, "{}: {} is {}, out of range; {}", path_, name, found->value,
+           to_cure(Cure::give_flag, flag));
     }
     return value;
   }
@@ -356,10 +356,8 @@ class Resolver {
     const std::uint32_t side = width / columns;
     if (width % columns != 0 || side <= 2U * info_.desc.guard_band ||
         side - 2U * info_.desc.guard_band > kMaxBlockSide) {
-      fail(Exit::bad_input,
-           "{}: {} texels of width do not make the {} of tiling {}; check --grid, --tiling and "
-           "--core",
-           path_, width, columns_text(columns), to_string(unit.layout.tiling));
+      fail(Exit::bad_input, "{}: {} texels of width do not make the {} of tiling {}; {}", path_,
+           width, columns_text(columns), to_string(unit.layout.tiling), to_cure(Cure::fix_columns));
     }
     return static_cast<std::uint8_t>(side - 2U * info_.desc.guard_band);
   }

@@ -1,5 +1,6 @@
 #include "dump/sequence.h"
 
+#include "dump/cure.h"
 #include "dump/dump.h"
 #include "dump/error.h"
 #include "dump/text.h"
@@ -8,7 +9,9 @@
 #include <charconv>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <set>
+#include <span>
 #include <system_error>
 #include <tuple>
 
@@ -18,22 +21,35 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMaxDigits = 18;
+constexpr std::size_t kMaxFiles = 10000;  ///< of a directory
 
 struct ParsedName {
   std::string name;
   std::string separator;
-  std::string number;  ///< empty: none
+  std::string number;  ///< with its sign; empty: none
   std::string extension;
 
-  /// True if the number must be a frame's; a short one may belong to the name.
-  [[nodiscard]] bool certain() const {
-    return separator == "." || number.size() >= (separator.empty() ? 4U : 3U);
+  [[nodiscard]] bool is_negative() const { return number.starts_with('-'); }
+  [[nodiscard]] unsigned digits() const {
+    return static_cast<unsigned>(number.size()) - (is_negative() ? 1 : 0);
+  }
+  [[nodiscard]] std::int64_t value() const {
+    std::int64_t value = 0;
+    std::from_chars(number.data(), number.data() + number.size(), value);
+    return value;
+  }
+  /// Makes the number a part of the name.
+  void keep_number() {
+    name += separator + number;
+    separator.clear();
+    number.clear();
   }
 };
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_separator(char c) { return c == '.' || c == '_' || c == '-'; }
 
-/// Splits a file name; takes any number at its end for a frame's.
+/// Splits a file name; takes any number at its end for a frame's, but a side as in 1024x1024.
 ParsedName parse(const fs::path& path) {
   ParsedName parsed;
   parsed.extension = path.extension().string();
@@ -43,8 +59,11 @@ ParsedName parse(const fs::path& path) {
   std::size_t first = stem.size();
   while (first > 0 && is_digit(stem[first - 1])) --first;
   if (first == stem.size() || first == 0 || stem.size() - first > kMaxDigits) return parsed;
-  const char before = stem[first - 1];
-  const std::size_t end = before == '.' || before == '_' || before == '-' ? first - 1 : first;
+  if (first > 1 && (stem[first - 1] == 'x' || stem[first - 1] == 'X') && is_digit(stem[first - 2]))
+    return parsed;
+  // A sign stands behind a separator: foo.-003.
+  if (first > 1 && stem[first - 1] == '-' && is_separator(stem[first - 2])) --first;
+  const std::size_t end = is_separator(stem[first - 1]) ? first - 1 : first;
   if (end == 0) return parsed;
   parsed.name = stem.substr(0, end);
   parsed.separator = stem.substr(end, first - end);
@@ -57,24 +76,139 @@ struct Input {
   ParsedName parsed;
 };
 
-/// Returns numbers that are no frame's to the names.
-void settle_numbers(std::vector<Input>& inputs) {
-  std::map<std::tuple<std::string, std::string, std::string>, std::set<std::string>> numbers;
-  for (const Input& input : inputs) {
-    const ParsedName& parsed = input.parsed;
-    numbers[{parsed.name, parsed.separator, parsed.extension}].insert(parsed.number);
+/// True if `text` is what a pattern stands for, in which * is any text.
+bool matches(std::string_view text, std::string_view pattern) {
+  const std::size_t star = pattern.find('*');
+  if (star == std::string_view::npos) return text == pattern;
+  if (!text.starts_with(pattern.substr(0, star))) return false;
+  for (std::size_t at = star; at <= text.size(); ++at) {
+    if (matches(text.substr(at), pattern.substr(star + 1))) return true;
   }
-  for (Input& input : inputs) {
-    ParsedName& parsed = input.parsed;
-    if (parsed.number.empty() || parsed.certain()) continue;
-    if (numbers[{parsed.name, parsed.separator, parsed.extension}].size() > 1) continue;
-    parsed.name += parsed.separator + parsed.number;
-    parsed.separator.clear();
-    parsed.number.clear();
+  return false;
+}
+
+/// True if the number of a file stands where a pattern has its #.
+bool at_pattern(const ParsedName& parsed, const std::string& pattern) {
+  const std::size_t first = pattern.find('#');
+  if (first == std::string::npos) return false;
+  const std::size_t end = std::min(pattern.find_first_not_of('#', first), pattern.size());
+  const std::string_view rest = std::string_view(pattern).substr(end);
+  const bool extension = rest.empty() || matches("." + parsed.extension, rest);
+  return extension &&
+         matches(parsed.name + parsed.separator, std::string_view(pattern).substr(0, first));
+}
+
+/// The known sequence that a file belongs to; null if there is none.
+const Sequence* known_of(const ParsedName& parsed, const std::vector<Sequence>& known) {
+  const std::string stem = parsed.name + parsed.separator + parsed.number;
+  for (const Sequence& one : known) {
+    if (one.extension != parsed.extension) continue;
+    if (one.digits == 0 && one.name == stem) return &one;
+    if (one.digits > 0 && one.name == parsed.name && one.separator == parsed.separator &&
+        !parsed.number.empty()) {
+      return &one;
+    }
+  }
+  return nullptr;
+}
+
+/// True if all files hold the same images, of one size and format.
+bool are_alike(const std::vector<const Input*>& files) {
+  try {
+    const auto first = read_dump_infos(files.front()->path);
+    return std::ranges::all_of(files, [&](const Input* file) {
+      const auto same = [](const DumpInfo& a, const DumpInfo& b) {
+        return a.desc == b.desc && a.image == b.image && a.channels == b.channels;
+      };
+      return std::ranges::equal(first, read_dump_infos(file->path), same);
+    });
+  } catch (const Error&) {
+    return true;  // Files that flags describe, or damaged ones, of which reading them tells.
   }
 }
 
-std::vector<std::string> expand_directories(const std::vector<std::string>& paths) {
+constexpr const char* kNoRun = "they are no run";
+
+/// Why numbers that files alone differ in are none of frames; empty if they are.
+std::string why_no_frames(const std::vector<const Input*>& files, const NumberOptions& options) {
+  const ParsedName& any = files.front()->parsed;
+  if (any.separator == ".") return "";
+  if (files.size() == 1) {
+    const bool is_long = any.digits() >= (any.separator.empty() ? 4U : 3U);
+    return is_long ? "" : "it is the only one";
+  }
+  std::set<std::int64_t> numbers;
+  bool padded = false;
+  for (const Input* file : files) {
+    numbers.insert(file->parsed.value());
+    const std::string& number = file->parsed.number;
+    padded =
+        padded || (file->parsed.digits() > 1 && number.find_first_not_of('-') == number.find('0'));
+  }
+  const bool named_so =
+      any.separator.empty() && any.digits() < 4 && std::ranges::any_of(any.name, is_digit);
+  if (named_so) return "their names have other numbers";
+  const auto span = static_cast<std::uint64_t>(*numbers.rbegin() - *numbers.begin()) + 1;
+  if (!padded && !options.allow_gaps && span != numbers.size()) return kNoRun;
+  if (!are_alike(files)) return "their shapes or formats differ";
+  return "";
+}
+
+/// Returns numbers that are no frame's to the names.
+void settle_numbers(std::vector<Input>& inputs, const NumberOptions& options,
+                    std::vector<std::string>* remarks) {
+  std::map<std::tuple<std::string, std::string, std::string>, std::vector<Input*>> groups;
+  for (Input& input : inputs) {
+    ParsedName& parsed = input.parsed;
+    if (parsed.number.empty()) continue;
+    if (const Sequence* known = known_of(parsed, options.known)) {
+      if (known->digits == 0) parsed.keep_number();
+      continue;
+    }
+    if (options.stills || !options.pattern.empty()) {
+      if (options.stills || !at_pattern(parsed, options.pattern)) parsed.keep_number();
+      continue;
+    }
+    groups[{parsed.name, parsed.separator, parsed.extension}].push_back(&input);
+  }
+  for (auto& [key, files] : groups) {
+    const ParsedName any = files.front()->parsed;
+    const std::string why = why_no_frames({files.begin(), files.end()}, options);
+    const bool guessed = any.separator != "." && files.size() > 1;
+    if (guessed && remarks != nullptr) {
+      remarks->push_back(
+          why.empty()
+              ? fmt::format("{} and {} more: their numbers are taken for those of frames; {}",
+                            files.front()->path, files.size() - 1, to_cure(Cure::stills))
+              : fmt::format("{} and {} more: taken for stills, since {}; {}", files.front()->path,
+                            files.size() - 1, why,
+                            to_cure(Cure::frames_from, any.name + any.separator,
+                                    why == kNoRun ? " --allow-gaps" : "")));
+    }
+    if (why.empty()) continue;
+    for (Input* file : files) file->parsed.keep_number();
+  }
+}
+
+/// Takes a directory's entry if it is a file that is read.
+void take_entry(const fs::directory_entry& entry, std::vector<std::string>& files,
+                std::vector<std::string>* remarks) {
+  const std::string name = entry.path().filename().string();
+  const auto kind = image_kind(name);
+  // Files without an extension count as EXR only if the caller names them.
+  if (!kind || !is_written(*kind) || !entry.path().has_extension() || name[0] == '.') return;
+  std::error_code error;
+  if (entry.is_symlink(error) && !fs::exists(entry.path(), error)) {
+    if (remarks != nullptr) {
+      remarks->push_back(entry.path().string() + ": is a link to nothing, and left out");
+    }
+    return;
+  }
+  files.push_back(entry.path().string());
+}
+
+std::vector<std::string> expand_directories(const std::vector<std::string>& paths,
+                                            std::vector<std::string>* remarks) {
   std::vector<std::string> files;
   for (const std::string& path : paths) {
     std::error_code error;
@@ -84,12 +218,10 @@ std::vector<std::string> expand_directories(const std::vector<std::string>& path
     }
     const std::size_t first = files.size();
     for (const auto& entry : fs::directory_iterator(path, error)) {
-      const std::string name = entry.path().filename().string();
-      const auto kind = image_kind(name);
-      // Skips files without an extension, which count as EXR only if the caller names them.
-      if (kind && is_written(*kind) && entry.path().has_extension() && name[0] != '.') {
-        files.push_back(entry.path().string());
-      }
+      take_entry(entry, files, remarks);
+      if (files.size() - first <= kMaxFiles) continue;
+      fail(Exit::bad_input, "{}: has more than {} dumps; {}", path, kMaxFiles,
+           to_cure(Cure::fewer_files));
     }
     if (error) fail(Exit::io, "{}: cannot be listed: {}", path, error.message());
     if (files.size() == first) {
@@ -100,6 +232,22 @@ std::vector<std::string> expand_directories(const std::vector<std::string>& path
   return files;
 }
 
+/// Settles how numbers are padded: as printf() does it, a sign takes the place of a digit.
+void settle_digits(Sequence& sequence, std::span<const Input* const> files) {
+  std::optional<unsigned> negative, other;
+  for (const Input* file : files) {
+    const unsigned digits = file->parsed.digits();
+    std::optional<unsigned>& least = file->parsed.is_negative() ? negative : other;
+    least = std::min(least.value_or(digits), digits);
+  }
+  if (!negative || !other) {
+    sequence.digits = negative ? *negative : *other;
+    return;
+  }
+  sequence.counts_sign = *negative + 1 == *other;
+  sequence.digits = sequence.counts_sign ? *other : std::min(*negative, *other);
+}
+
 void settle(Sequence& sequence) {
   std::stable_sort(
       sequence.frames.begin(), sequence.frames.end(),
@@ -108,23 +256,34 @@ void settle(Sequence& sequence) {
     const FrameFile& left = sequence.frames[i - 1];
     const FrameFile& right = sequence.frames[i];
     if (left.frame == right.frame) {
-      fail(Exit::bad_input,
-           "{} and {} are both frame {} of texture {}; rename one of them, or give one folder at a "
-           "time",
-           left.path, right.path, left.frame, sequence.name);
+      fail(Exit::bad_input, "{} and {} are both frame {} of texture {}; {}", left.path, right.path,
+           left.frame, sequence.name, to_cure(Cure::one_folder));
     }
   }
   for (const FrameFile& file : sequence.frames) {
-    const std::string expected = frame_file_name(sequence.name, sequence.digits, file.frame,
-                                                 sequence.extension, sequence.separator);
+    const std::string expected = sequence.file_name(file.frame);
     if (fs::path(file.path).filename() != expected) {
-      fail(Exit::bad_input, "{}: frame numbers of texture {} differ in width; expected {}",
-           file.path, sequence.name, expected);
+      fail(Exit::bad_input, "{}: frame numbers of texture {} differ in width; {}", file.path,
+           sequence.name, to_cure(Cure::name_it, expected));
     }
   }
 }
 
-void refuse_gaps(const std::vector<Sequence>& sequences, const char* cure) {
+/// Stills beside sequences are of the first frame of these.
+void settle_stills(std::vector<Sequence>& sequences) {
+  std::optional<std::uint64_t> first;
+  for (const Sequence& sequence : sequences) {
+    for (const FrameFile& file : sequence.frames) {
+      if (sequence.digits > 0) first = std::min(first.value_or(file.frame), file.frame);
+    }
+  }
+  for (Sequence& sequence : sequences) {
+    const bool still = sequence.digits == 0 && sequence.frames.size() == 1;
+    if (still) sequence.frames.front().frame = first.value_or(0);
+  }
+}
+
+void refuse_gaps(const std::vector<Sequence>& sequences, Cure cure) {
   const auto frames = all_frames(sequences);
   for (const Sequence& sequence : sequences) {
     for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -132,10 +291,9 @@ void refuse_gaps(const std::vector<Sequence>& sequences, const char* cure) {
       const bool hole = i > 0 && frames[i] != frames[i - 1] + 1;
       const std::uint64_t missing = hole ? frames[i - 1] + 1 : frames[i];
       if (!hole && sequence.find(missing) != nullptr) continue;
-      const std::string name = frame_file_name(sequence.name, sequence.digits, missing,
-                                               sequence.extension, sequence.separator);
+      const std::string name = sequence.file_name(missing);
       fail(Exit::bad_input, "frame {} of texture {} is missing ({}); {}", missing, sequence.name,
-           (fs::path(sequence.frames.front().path).parent_path() / name).string(), cure);
+           (fs::path(sequence.frames.front().path).parent_path() / name).string(), to_cure(cure));
     }
   }
 }
@@ -149,44 +307,73 @@ const FrameFile* Sequence::find(std::uint64_t frame) const noexcept {
   return at != frames.end() && at->frame == frame ? &*at : nullptr;
 }
 
-std::vector<Sequence> group_sequences(const std::vector<std::string>& paths, bool allow_gaps,
-                                      const char* cure) {
+std::string Sequence::file_name(std::uint64_t frame) const {
+  return frame_file_name(name, digits, static_cast<std::int64_t>(frame) + base, extension,
+                         separator, counts_sign);
+}
+
+std::vector<Sequence> group_sequences(const std::vector<std::string>& paths,
+                                      const NumberOptions& options,
+                                      std::vector<std::string>* remarks) {
+  if (!options.pattern.empty() && options.pattern.find('#') == std::string::npos) {
+    fail(Exit::usage, "--frames-from {}: has no # where the number is, as in \"irr_#\"",
+         options.pattern);
+  }
   std::vector<Input> inputs;
-  for (const std::string& path : expand_directories(paths)) {
+  for (const std::string& path : expand_directories(paths, remarks)) {
     (void)require_image_kind(path);
     inputs.push_back({path, parse(path)});
   }
-  settle_numbers(inputs);
+  settle_numbers(inputs, options, remarks);
+  std::int64_t base = options.known.empty() ? 0 : options.known.front().base;
+  for (const Input& input : inputs) {
+    if (options.known.empty()) base = std::min(base, input.parsed.value());
+  }
   std::vector<Sequence> sequences;
   std::map<std::string, std::size_t> places;
-  for (const auto& [path, parsed] : inputs) {
-    const auto digits = static_cast<unsigned>(parsed.number.size());
+  std::vector<std::vector<const Input*>> files;
+  for (const Input& input : inputs) {
+    const auto& [path, parsed] = input;
+    const unsigned digits = parsed.digits();
     const auto [place, is_new] = places.emplace(parsed.name, sequences.size());
     if (is_new) {
-      sequences.push_back({parsed.name, digits, parsed.extension, parsed.separator, {}});
+      sequences.push_back(
+          {parsed.name, digits, parsed.extension, parsed.separator, base, false, {}});
+      files.emplace_back();
     }
+    files[place->second].push_back(&input);
     Sequence& sequence = sequences[place->second];
     if (sequence.extension != parsed.extension) {
       fail(Exit::bad_input, "{}: texture {} has files of type .{} as well", path, parsed.name,
            sequence.extension);
     }
     if (sequence.separator != parsed.separator) {
-      fail(Exit::bad_input, "{}: texture {} has {} as well; rename one of them", path, parsed.name,
-           sequence.frames.front().path);
+      fail(Exit::bad_input, "{}: texture {} has {} as well; {}", path, parsed.name,
+           sequence.frames.front().path, to_cure(Cure::rename));
     }
-    std::uint64_t frame = 0;
-    std::from_chars(parsed.number.data(), parsed.number.data() + digits, frame);
-    sequence.digits = std::min(sequence.digits, digits);
-    sequence.frames.push_back({frame, path});
+    if (parsed.value() < base && digits > 0) {
+      fail(Exit::bad_input, "{}: its number is below {}, the first there is", path, base);
+    }
+    const std::int64_t frame = digits == 0 ? 0 : parsed.value() - base;
+    sequence.frames.push_back({static_cast<std::uint64_t>(frame), path});
   }
+  for (std::size_t i = 0; i < sequences.size(); ++i) settle_digits(sequences[i], files[i]);
+  settle_stills(sequences);
   for (Sequence& sequence : sequences) settle(sequence);
-  if (!allow_gaps) refuse_gaps(sequences, cure);
+  if (!options.allow_gaps) refuse_gaps(sequences, options.cure);
   return sequences;
 }
 
-std::string frame_file_name(const std::string& name, unsigned digits, std::uint64_t frame,
-                            const std::string& extension, const std::string& separator) {
-  std::string file = digits == 0 ? name : fmt::format("{}{}{:0{}}", name, separator, frame, digits);
+std::string frame_file_name(const std::string& name, unsigned digits, std::int64_t number,
+                            const std::string& extension, const std::string& separator,
+                            bool counts_sign) {
+  std::string file = name;
+  if (digits > 0) {
+    const auto magnitude =
+        number < 0 ? 0 - static_cast<std::uint64_t>(number) : static_cast<std::uint64_t>(number);
+    const unsigned width = digits - (number < 0 && counts_sign ? 1 : 0);
+    file += fmt::format("{}{}{:0{}}", separator, number < 0 ? "-" : "", magnitude, width);
+  }
   if (!extension.empty()) file += "." + extension;
   return file;
 }

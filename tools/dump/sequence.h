@@ -1,6 +1,8 @@
 // Sequences of dumps by file name: NAME.FFFF.EXT is frame FFFF of texture NAME, as are
-// NAME_FFFF.EXT, NAME-FFFF.EXT and NAMEFFFF.EXT.
+// NAME_FFFF.EXT, NAME-FFFF.EXT and NAMEFFFF.EXT, unless their numbers are none of frames.
 #pragma once
+
+#include "dump/cure.h"
 
 #include <cstdint>
 #include <optional>
@@ -10,7 +12,7 @@
 namespace gicodec::tools {
 
 struct FrameFile {
-  std::uint64_t frame = 0;
+  std::uint64_t frame = 0;  ///< the file's number less Sequence::base
   std::string path;
 };
 
@@ -20,25 +22,40 @@ struct Sequence {
   unsigned digits = 0;            ///< least digits of the number; 0: one file without a number
   std::string extension;          ///< without the dot
   std::string separator = ".";    ///< between name and number: ".", "_", "-" or empty
+  std::int64_t base = 0;          ///< the number of frame 0, not above 0; of all sequences the same
+  bool counts_sign = false;       ///< digits count the sign of a negative number, as of printf()
   std::vector<FrameFile> frames;  ///< ascending by frame
 
   [[nodiscard]] const FrameFile* find(std::uint64_t frame) const noexcept;
+  [[nodiscard]] std::string file_name(std::uint64_t frame) const;
+};
+
+/// How numbers in names of files are read.
+struct NumberOptions {
+  bool allow_gaps = false;   ///< missing frames are no error
+  Cure cure = Cure::gaps;    ///< of missing ones
+  bool stills = false;       ///< no number is a frame's
+  std::string pattern = {};  ///< if not empty, only numbers at its # are: "irr_#", "*.#.exr"
+  /// Names that are known, as those of a container: their files are read as these are.
+  std::vector<Sequence> known = {};
 };
 
 /// Groups files by texture, in order of first appearance. A directory stands for its .exr, .dds,
-/// .ktx2, .raw and .bin files. A number behind a point is always a frame's. Behind another
-/// separator or none it is a frame's if it has three digits (none: four), or if several files
-/// differ only in it; else it belongs to the name.
-/// Errors: a texture with two separators; the same frame twice; numbers of different width; unless
-/// `allow_gaps`, a missing frame that another numbered texture has or that lies between two frames,
-/// with `cure` as a hint.
+/// .ktx2, .raw and .bin files, at most 10,000. A number behind a point is always a frame's, one
+/// behind another separator or none if it has three digits (none: four) or several files differ
+/// only in it, and they are one run of files of one shape; else it belongs to the name. Stills are
+/// of the first frame that numbers give. `remarks`, if not null: what was taken for what, and what
+/// was left out, a line each. Errors: a texture with two separators; the same frame twice; numbers
+/// of different width; unless `allow_gaps`, a missing frame that another numbered texture has or
+/// that lies between two frames, with `cure` as a hint.
 [[nodiscard]] std::vector<Sequence> group_sequences(const std::vector<std::string>& paths,
-                                                    bool allow_gaps = false,
-                                                    const char* cure = "--allow-gaps accepts that");
+                                                    const NumberOptions& options = {},
+                                                    std::vector<std::string>* remarks = nullptr);
 /// "color.0003.exr"; "color.exr" for digits 0.
 [[nodiscard]] std::string frame_file_name(const std::string& name, unsigned digits,
-                                          std::uint64_t frame, const std::string& extension,
-                                          const std::string& separator = ".");
+                                          std::int64_t number, const std::string& extension,
+                                          const std::string& separator = ".",
+                                          bool counts_sign = false);
 /// "dumps/color" of "dumps/color.0003.exr".
 [[nodiscard]] std::string texture_path(const std::string& path);
 [[nodiscard]] bool is_separator(const std::string& text) noexcept;

@@ -1,5 +1,6 @@
 #include "dump/supercompression.h"
 
+#include "dump/cure.h"
 #include "dump/error.h"
 
 #include <zlib.h>
@@ -66,12 +67,12 @@ std::vector<std::byte> unpack_level(Scheme scheme, std::span<const std::byte> pa
     got = size;
   }
   if (!why.empty()) {
-    fail(Exit::bad_input, "{}: a level is damaged: {} says {}; get the file again", path,
-         to_string(scheme), why);
+    fail(Exit::bad_input, "{}: a level is damaged: {} says {}; {}", path, to_string(scheme), why,
+         to_cure(Cure::get_again));
   }
   if (got != bytes) {
-    fail(Exit::bad_input, "{}: a level is damaged: it unpacks to {} bytes, not {}; get it again",
-         path, got, bytes);
+    fail(Exit::bad_input, "{}: a level is damaged: it unpacks to {} bytes, not {}; {}", path, got,
+         bytes, to_cure(Cure::get_again));
   }
   return level;
 }

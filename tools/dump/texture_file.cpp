@@ -1,5 +1,6 @@
 #include "dump/texture_file.h"
 
+#include "dump/cure.h"
 #include "dump/error.h"
 #include "dump/file.h"
 #include "dump/geometry_attributes.h"
@@ -63,11 +64,9 @@ void check_bytes(const TextureFile& file, const TextureHead& head, Format format
              file.path(), level, stored.bytes, stored.offset, file.size());
       }
       if (stored.unpacked != own) {
-        fail(Exit::bad_input,
-             "{}: level {} has {} bytes, and {} texels of {} take {}; check its format, or "
-             "--vk-format",
+        fail(Exit::bad_input, "{}: level {} has {} bytes, and {} texels of {} take {}; {}",
              file.path(), level, stored.unpacked, to_string(level_texels(head, level)),
-             find_format(format)->name, own);
+             find_format(format)->name, own, to_cure(Cure::fix_format));
       }
     }
     return;
@@ -78,11 +77,9 @@ void check_bytes(const TextureFile& file, const TextureHead& head, Format format
          wanted, head.offset, file.size());
   }
   if (head.bytes != wanted || file.size() - head.offset > wanted) {
-    fail(Exit::bad_input,
-         "{}: has {} bytes from its first texel on, but {} make its {}; check its format, or "
-         "--vk-format",
+    fail(Exit::bad_input, "{}: has {} bytes from its first texel on, but {} make its {}; {}",
          file.path(), std::max(head.bytes, file.size() - head.offset), wanted,
-         find_format(format)->name);
+         find_format(format)->name, to_cure(Cure::fix_format));
   }
 }
 
@@ -237,7 +234,7 @@ DumpInfo texture_info(const TextureHead& head, const ImagePlace& place, bool fir
   if (other && (!format_given || Record(*head.format).bytes != record.bytes)) {
     fail(Exit::bad_input, "{}: is of format {}, not {}{}", path, find_format(*head.format)->name,
          find_format(record.format)->name,
-         format_given ? ", whose texels have another size; check --vk-format" : "");
+         format_given ? ", whose texels have another size; " + to_cure(Cure::check_format) : "");
   }
   return info;
 }

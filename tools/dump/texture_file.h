@@ -40,6 +40,8 @@ struct TextureHead {
 /// Most levels of a texture: sides are below 2^32.
 inline constexpr std::uint32_t kMaxLevels = 32;
 
+/// Levels down to one texel.
+[[nodiscard]] std::uint32_t max_levels(const TextureHead& head) noexcept;
 /// Size of a level.
 [[nodiscard]] Grid level_texels(const TextureHead& head, std::uint32_t level) noexcept;
 /// "py.mip2"; empty for the only image of a file and the first level of a texture that is no cube.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 
 namespace gicodec::tools {
 namespace {
@@ -22,6 +23,12 @@ std::uint32_t slices(const TextureHead& head, std::uint32_t level) {
 }
 
 }  // namespace
+
+std::uint32_t max_levels(const TextureHead& head) noexcept {
+  const Grid& all = head.texels;
+  const std::uint32_t side = std::max({all.x, all.y, head.volume ? all.z : 1U});
+  return static_cast<std::uint32_t>(std::bit_width(side));
+}
 
 Grid level_texels(const TextureHead& head, std::uint32_t level) noexcept {
   const auto side = [level](std::uint32_t all) {

@@ -59,15 +59,21 @@ struct Compared {
   [[nodiscard]] bool same() const { return difference.same() && headers.empty(); }
 };
 
+NumberOptions with_gaps(NumberOptions numbers) {
+  numbers.allow_gaps = true;
+  return numbers;
+}
+
 /// Pairs files of the same name, and else of the same texture and frame, because folders may hold
 /// files of different kinds.
-std::vector<Pair> pairs_of_folders(const std::string& left, const std::string& right) {
+std::vector<Pair> pairs_of_folders(const std::string& left, const std::string& right,
+                                   const NumberOptions& numbers) {
   using Key = std::pair<std::string, std::uint64_t>;
   std::map<Key, Pair> pairs;
   std::set<std::string> both;
   const auto name_of = [](const std::string& path) { return fs::path(path).filename().string(); };
   for (const auto& [own, other] : {std::pair(left, right), std::pair(right, left)}) {
-    for (const Sequence& sequence : group_sequences({own}, true)) {
+    for (const Sequence& sequence : group_sequences({own}, with_gaps(numbers))) {
       for (const FrameFile& file : sequence.frames) {
         const std::string name = name_of(file.path), there = (fs::path(other) / name).string();
         const bool same = fs::exists(there);
@@ -98,7 +104,7 @@ std::vector<Pair> pairs_of(const CompareOptions& options) {
     fail(Exit::usage, "compare needs two files or two directories");
   }
   if (!left_directory) return {{options.left, options.right}};
-  return pairs_of_folders(options.left, options.right);
+  return pairs_of_folders(options.left, options.right, options.geometry.numbers);
 }
 
 Compared compare_images(const Pair& pair, const Dump& left, const Dump& right, bool headers) {
@@ -173,8 +179,8 @@ Exit compare(const CompareOptions& options, const Cli& cli) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   bool same = true;
   const auto pairs = pairs_of(options);
-  std::vector<Sequence> all = group_sequences({options.left}, true);
-  const auto others = group_sequences({options.right}, true);
+  std::vector<Sequence> all = group_sequences({options.left}, with_gaps(options.geometry.numbers));
+  const auto others = group_sequences({options.right}, with_gaps(options.geometry.numbers));
   all.insert(all.end(), others.begin(), others.end());
   check_names(options.geometry, all);
   Progress progress("comparing", pairs.size(), cli);
@@ -224,6 +230,7 @@ void add_compare(Cli& cli) {
   command->add_flag("--texels-only", options->texels_only, "Ignore attributes and channel types");
   add_output_format(*command, options->format);
   add_geometry_flags(*command, options->geometry);
+  add_number_flags(*command, options->geometry.numbers);
   command->callback(
       [&cli, options] { cli.run = [&cli, options] { return compare(*options, cli); }; });
 }

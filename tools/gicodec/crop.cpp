@@ -2,6 +2,7 @@
 #include "common/cli.h"
 #include "common/stored_texture.h"
 #include "dump/block_place.h"
+#include "dump/cure.h"
 #include "dump/dump.h"
 #include "dump/file.h"
 #include "dump/sequence.h"
@@ -33,7 +34,6 @@ struct CropOptions {
   std::string origin;
   std::string size;
   std::string compression;
-  bool allow_gaps = false;
   bool overwrite = false;
   GeometryFlags geometry;
 };
@@ -99,8 +99,9 @@ Dump crop_dump(const Dump& from, const Grid& origin, const Grid& size, const std
 
 /// The same file name, with the extension of EXR for images that are only read.
 std::string output_path(const CropOptions& options, const Sequence& sequence, std::uint64_t frame) {
-  const auto name = frame_file_name(sequence.name, sequence.digits, frame,
-                                    written_extension(sequence), sequence.separator);
+  const auto name = frame_file_name(
+      sequence.name, sequence.digits, static_cast<std::int64_t>(frame) + sequence.base,
+      written_extension(sequence), sequence.separator, sequence.counts_sign);
   return (std::filesystem::path(options.output) / name).string();
 }
 
@@ -127,10 +128,8 @@ std::string not_kept(const std::vector<DumpInfo>& images, const std::string& pat
   for (const DumpInfo& image : images) {
     if (image.desc.grid != images.front().desc.grid || image.place.level > 0) {
       fail(Exit::bad_input,
-           "{}: holds images of several sizes ({}), which are no box of one grid; \"gicodec "
-           "encode\" "
-           "and \"gicodec decode --files raw\" make a file of each",
-           path, listed(images, image_words));
+           "{}: holds images of several sizes ({}), which are no box of one grid; {}", path,
+           listed(images, image_words), to_cure(Cure::raw_files));
     }
     lost.insert(lost.end(), image.lost.begin(), image.lost.end());
     Attributes attributes = image.attributes;
@@ -150,7 +149,11 @@ Exit crop(const CropOptions& options, const Cli& cli) {
          options.origin);
   }
   for (const std::string& path : options.inputs) require_exists(path);
-  const auto sequences = group_sequences(options.inputs, options.allow_gaps);
+  std::vector<std::string> remarks;
+  const auto sequences = group_sequences(options.inputs, options.geometry.numbers, &remarks);
+  for (const std::string& line : remarks) {
+    if (!cli.quiet) remark(line);
+  }
   check_outputs(options, sequences);
   check_names(options.geometry, sequences);
   std::size_t files = 0;
@@ -210,10 +213,11 @@ void add_crop(Cli& cli) {
       ->add_option("--compression", options->compression,
                    "Compression of the EXR files; default: as before")
       ->allow(one_of(std::vector<std::string>(kCompressions.begin(), kCompressions.end())));
-  command->add_flag("--allow-gaps", options->allow_gaps,
+  command->add_flag("--allow-gaps", options->geometry.numbers.allow_gaps,
                     "Accept missing frames and textures that lack frames");
   add_overwrite(*command, options->overwrite, "Replace files that are there already");
   add_geometry_flags(*command, options->geometry);
+  add_number_flags(*command, options->geometry.numbers);
   command->callback([&cli, options] { cli.run = [&cli, options] { return crop(*options, cli); }; });
 }
 

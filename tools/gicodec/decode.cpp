@@ -8,6 +8,7 @@
 #include "common/file_names.h"
 #include "common/frame_range.h"
 #include "common/volume_words.h"
+#include "dump/cure.h"
 #include "dump/dump.h"
 #include "dump/file.h"
 #include "dump/texture_file.h"
@@ -56,8 +57,8 @@ void check_numbered(const StoredTexture& texture, std::optional<std::uint64_t>& 
   if (texture.digits == 0 && written) {
     fail(Exit::bad_input,
          "{}: the files of texture {} have no frame numbers, so that frame {} would take the place "
-         "of frame {}; --frames {} gives that one alone",
-         path, texture.name, frame, *written, frame);
+         "of frame {}; {}",
+         path, texture.name, frame, *written, to_cure(Cure::one_frame, frame));
   }
   written = frame;
 }
@@ -76,10 +77,8 @@ void keep_original(const std::string& path, const StoredTexture& texture, const 
       old->info.lost.empty()) {
     return;
   }
-  fail(Exit::io,
-       "{}: may be the original of texture {}, of which the container lacks {}; decode to another "
-       "folder",
-       path, texture.name, lacks);
+  fail(Exit::io, "{}: may be the original of texture {}, of which the container lacks {}; {}", path,
+       texture.name, lacks, to_cure(Cure::other_folder));
 }
 
 /// Writes the file of a frame's textures that are its images.
@@ -119,6 +118,7 @@ std::vector<std::vector<std::size_t>> files_of_frame(const ContainerInput& input
 Exit decode(const DecodeOptions& options, const Cli& cli) {
   const FrameRange range = frame_range_from_string(options.frames);
   ContainerInput input(options.input, options.decoder);
+  input.read_metadata();
   if (!options.files.empty()) input.set_files(*image_kind("x." + options.files));
   if (options.plain) input.drop_attribute(kKtx2Scheme);
   select_dumps(input, options.volume);

@@ -7,6 +7,7 @@
 #include "common/stored_texture.h"
 #include "common/volume_words.h"
 #include "dump/block_place.h"
+#include "dump/cure.h"
 #include "dump/dump.h"
 #include "dump/file.h"
 #include "dump/sequence.h"
@@ -54,7 +55,6 @@ struct EncodeOptions {
   BackendFlags backend;
   std::vector<std::string> max_error;
   std::string inactive;
-  bool allow_gaps = false;
   unsigned threads = 1;
 };
 
@@ -64,11 +64,8 @@ void require_nothing_outside(const Dump& dump, const std::string& path) {
   const auto record = record_in_no_block(desc, dump.texels);
   if (!record) return;
   const std::uint64_t width = extent(desc).width;
-  fail(
-      Exit::bad_input,
-      "{}: texel ({}, {}) is not zero and in no block, and would be lost; set it to zero, or leave "
-      "out --layout, so that every texel is in a block",
-      path, *record % width, *record / width);
+  fail(Exit::bad_input, "{}: texel ({}, {}) is not zero and in no block, and would be lost; {}",
+       path, *record % width, *record / width, to_cure(Cure::leave_layout_out));
 }
 
 /// The state of one texture. Reading runs one frame ahead of encoding.
@@ -123,10 +120,9 @@ void require_size(const StoredTexture& texture, const std::string& path) {
   if (bytes <= most) return;
   const Extent size = extent(texture.info.desc);
   fail(Exit::bad_input,
-       "{}: {}x{}x{} records of {} take {} bytes, and a texture of a container may have {}; "
-       "\"gicodec crop\" cuts it into parts",
+       "{}: {}x{}x{} records of {} take {} bytes, and a texture of a container may have {}; {}",
        path, size.width, size.height, size.slices, record_text(texture.info.desc.record), bytes,
-       most);
+       most, to_cure(Cure::crop));
 }
 
 /// What flags for all textures mean for each texture.
@@ -156,9 +152,8 @@ std::vector<Lane> make_lanes(const EncodeOptions& options, const std::vector<Seq
   std::vector<Lane> lanes;
   auto inputs = inspect_all(options.geometry, sequences);
   if (inputs.size() > DecodeLimits{}.max_textures) {
-    fail(Exit::usage,
-         "{} textures are too many for one container; at most {}: pack some files each",
-         inputs.size(), DecodeLimits{}.max_textures);
+    fail(Exit::usage, "{} textures are too many for one container, which holds {}; {}",
+         inputs.size(), DecodeLimits{}.max_textures, to_cure(Cure::fewer_textures));
   }
   check_error_names(options.max_error, listed_names(inputs));
   const Roles roles = roles_of(options, inputs, silent);
@@ -212,11 +207,11 @@ std::vector<Lane> make_lanes(const EncodeOptions& options, const std::vector<Seq
   return lanes;
 }
 
-ContainerDescription describe(const EncodeOptions& options, const std::vector<Lane>& lanes,
-                              const std::vector<std::uint64_t>& frames) {
+Described describe(const EncodeOptions& options, const std::vector<Lane>& lanes,
+                   const std::vector<std::uint64_t>& frames) {
   const std::string& output = options.output;
-  ContainerDescription description;
-  std::size_t bytes = 0;
+  Described described;
+  ContainerDescription& description = described.description;
   for (const Lane& lane : lanes) {
     // decode would give files of another name.
     if (file_stem(lane.stored) != lane.files.name) {
@@ -231,7 +226,6 @@ ContainerDescription describe(const EncodeOptions& options, const std::vector<La
              "{}: attribute {} of texture {} has a name that is not UTF-8; rename it", output, name,
              lane.stored.name);
       }
-      bytes += name.size() + value.size() + 8;
     }
   }
   std::vector<const StoredTexture*> textures;
@@ -245,13 +239,8 @@ ContainerDescription describe(const EncodeOptions& options, const std::vector<La
   description.metadata.emplace_back("creator", fmt::format("gicodec {}", kVersionString));
   // A container that was cut off can thus name its missing frames.
   description.metadata.emplace_back("frames", fmt::format("{}-{}", frames.front(), frames.back()));
-  if (bytes + 1024 > DecodeLimits{}.max_description_bytes) {
-    fail(Exit::bad_input,
-         "{}: attributes that differ from frame to frame and inactive probes take {} bytes, more "
-         "than a container's description holds",
-         output, bytes);
-  }
-  return description;
+  spread_metadata(described, output);
+  return described;
 }
 
 void encode_frame(std::vector<Lane>& lanes, std::uint64_t frame, unsigned threads,
@@ -315,18 +304,23 @@ Exit encode(const EncodeOptions& options, const Cli& cli) {
     fail(Exit::usage, "-o {}: is named like a dump; a container is named FILE.gic", options.output);
   }
   for (const std::string& path : options.inputs) require_exists(path);
-  const auto sequences = group_sequences(options.inputs, options.allow_gaps);
+  std::vector<std::string> remarks;
+  const auto sequences = group_sequences(options.inputs, options.geometry.numbers, &remarks);
   check_container_output(options, sequences);
   check_names(options.geometry, sequences);
   const bool silent = cli.quiet || shares_standard_error(options.output);
+  for (const std::string& line : remarks) {
+    if (!silent) remark(line);
+  }
   if (const auto question = question_of(sequences); !question.empty() && !silent) remark(question);
   if (const auto question = layout_question(options.geometry, sequences);
       !question.empty() && !silent)
     remark(question);
   const auto frames = all_frames(sequences);
   std::vector<Lane> lanes = make_lanes(options, sequences, silent);
-  const ContainerDescription description = describe(options, lanes, frames);
-  ContainerOutput output(options.output, description);
+  const Described described = describe(options, lanes, frames);
+  const ContainerDescription& description = described.description;
+  ContainerOutput output(options.output, description, Existing::container, described.beside);
 
   std::vector<std::function<void()>> first_reads;
   for (Lane& lane : lanes) first_reads.emplace_back([&lane] { lane.read_next(); });
@@ -369,7 +363,7 @@ void add_encode(Cli& cli) {
   command->add_option("files", options->inputs, "Dumps of any number of textures and frames")
       ->required()
       ->type_name("FILE");
-  command->add_flag("--allow-gaps", options->allow_gaps,
+  command->add_flag("--allow-gaps", options->geometry.numbers.allow_gaps,
                     "Accept missing frames and textures that lack frames");
   command
       ->add_option("--inactive", options->inactive,
@@ -379,6 +373,7 @@ void add_encode(Cli& cli) {
   add_backend_flags(*command, options->backend);
   add_error_flag(*command, options->max_error, "LOSES BITS: how far texels may be off", "Coding");
   add_geometry_flags(*command, options->geometry);
+  add_number_flags(*command, options->geometry.numbers);
   command->callback(
       [&cli, options] { cli.run = [&cli, options] { return encode(*options, cli); }; });
 }

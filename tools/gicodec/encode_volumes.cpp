@@ -1,5 +1,6 @@
 #include "encode_volumes.h"
 
+#include "dump/cure.h"
 #include "dump/error.h"
 
 #include <gicodec/engines.h>
@@ -7,6 +8,9 @@
 #include <gicodec/textures.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
 #include <optional>
 #include <set>
 
@@ -176,6 +180,38 @@ void add_volumes(ContainerDescription& description, const GeometryFlags& flags, 
     description.volumes.back().geometry = common_place(own);
     textures = textures.subspan(own.size());
   }
+}
+
+void spread_metadata(Described& described, const std::string& output) {
+  constexpr std::size_t kLong = 1024, kMax = std::size_t{256} << 10, kPair = 8;
+  const auto bytes_of = [](const Metadata& metadata) {
+    std::uint64_t bytes = 0;
+    for (const auto& [name, value] : metadata) bytes += name.size() + value.size() + kPair;
+    return bytes;
+  };
+  auto& textures = described.description.textures;
+  std::uint64_t stay = 0, beside = 0;
+  for (TextureEntry& texture : textures) {
+    described.beside.push_back(take_beside(texture.metadata, kLong));
+    stay += bytes_of(texture.metadata);
+    beside += bytes_of(described.beside.back());
+  }
+  for (std::size_t i = 0; stay > kMax && i < textures.size(); ++i) {
+    Metadata more = take_beside(textures[i].metadata, 0);
+    beside += bytes_of(more);
+    std::ranges::move(more, std::back_inserter(described.beside[i]));
+  }
+  const std::uint64_t limit = DecodeLimits{}.max_metadata_bytes;
+  if (beside <= limit) return;
+  std::size_t largest = 0;
+  for (std::size_t i = 0; i < textures.size(); ++i) {
+    if (bytes_of(described.beside[i]) > bytes_of(described.beside[largest])) largest = i;
+  }
+  fail(Exit::bad_input,
+       "{}: attributes of the files take {} bytes, of texture {} alone {}, and a container holds "
+       "{}; {}",
+       output, beside, textures[largest].name, bytes_of(described.beside[largest]), limit,
+       to_cure(Cure::fewer_frames));
 }
 
 }  // namespace gicodec::tools

@@ -27,4 +27,14 @@ void add_volumes(ContainerDescription& description, const GeometryFlags& flags,
 [[nodiscard]] std::string layout_question(const GeometryFlags& flags,
                                           const std::vector<Sequence>& sequences);
 
+/// What a container says of its textures, in its description and beside it.
+struct Described {
+  ContainerDescription description;
+  std::vector<Metadata> beside;  ///< by texture
+};
+
+/// Moves what is long beside the description, so that this stays small. Throws Error of
+/// Exit::bad_input with a hint if it is more than a container holds.
+void spread_metadata(Described& described, const std::string& output);
+
 }  // namespace gicodec::tools

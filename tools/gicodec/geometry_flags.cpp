@@ -170,6 +170,17 @@ void add_geometry_flags(Command& command, GeometryFlags& flags) {
       "[NAME=]R=CHANNEL,...");
 }
 
+void add_number_flags(Command& command, NumberOptions& numbers) {
+  const std::string group =
+      "Which numbers in names of files are frames; default: by looking at the files";
+  command.add_flag("--stills", numbers.stills, "None: each file is a texture")->group(group);
+  command
+      .add_option("--frames-from", numbers.pattern,
+                  "Those where the pattern has #; * is any text, e.g. \"irr_#\"")
+      ->type_name("PATTERN")
+      ->group(group);
+}
+
 std::optional<VolumeDesc> layout_volume(const GeometryFlags& flags) {
   if (flags.layout.empty()) return std::nullopt;
   const EngineLayout* layout = find_engine_layout(flags.layout);

@@ -18,9 +18,12 @@ namespace gicodec::tools {
 struct GeometryFlags {
   std::vector<std::string> grid, core, guard_band, tiling, block, extent, format, channels;
   std::string layout;
+  NumberOptions numbers;
 };
 
 void add_geometry_flags(Command& command, GeometryFlags& flags);
+/// --stills and --frames-from.
+void add_number_flags(Command& command, NumberOptions& numbers);
 /// The flags of a texture: NAME=VALUE overrides VALUE, later flags override earlier ones. Throws
 /// Error of Exit::usage for an invalid value.
 [[nodiscard]] Hints hints_for(const GeometryFlags& flags, const std::string& texture);

@@ -99,6 +99,7 @@ Exit info(const InfoOptions& options, const Cli& cli) {
   LookBudget budget;
   std::size_t frames = 0;
   try {
+    input.read_metadata();
     Progress progress("reading frame", 0, cli);
     while (input.skip_frame()) {
       progress.step();

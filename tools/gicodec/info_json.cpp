@@ -14,13 +14,15 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// Metadata by name, the first of each name. Bypasses ordered_json's linear search.
-Json metadata_json(const Metadata& metadata) {
+Json metadata_json(const Metadata& metadata, const Metadata& beside = {}) {
   Json json = Json::object();
   using Entries = std::vector<std::pair<const std::string, Json>>;
   Entries& entries = json.get_ref<Json::object_t&>();
   std::set<std::string_view> seen;
-  for (const auto& [key, value] : metadata) {
-    if (seen.insert(key).second) entries.emplace_back(key, value);
+  for (const Metadata* const part : {&metadata, &beside}) {
+    for (const auto& [key, value] : *part) {
+      if (seen.insert(key).second) entries.emplace_back(key, value);
+    }
   }
   return json;
 }
@@ -128,7 +130,10 @@ Json texture_json(const ContainerReport& report, std::size_t place) {
   json["all"] = sums_json(own.all);
   if (const Json native = own.payload.json(entry.desc.record); !native.is_null())
     json["native"] = native;
-  if (!entry.metadata.empty()) json["metadata"] = metadata_json(entry.metadata);
+  const Metadata& beside = report.input.beside(place);
+  if (!entry.metadata.empty() || !beside.empty()) {
+    json["metadata"] = metadata_json(entry.metadata, beside);
+  }
   for (const PacketLine& packet : own.packets) {
     json["packets"].push_back(
         {{"frame", packet.frame},

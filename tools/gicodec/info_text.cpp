@@ -183,7 +183,9 @@ void print_texture(const ContainerReport& report, std::size_t place) {
   own.payload.print(desc.record);
   for (const PacketLine& packet : own.packets) print_packet(packet);
   if (!report.metadata) return;
-  for (const auto& [key, value] : entry.metadata) print("  {} = {}\n", key, value);
+  for (const auto* const metadata : {&entry.metadata, &report.input.beside(place)}) {
+    for (const auto& [key, value] : *metadata) print("  {} = {}\n", key, value);
+  }
 }
 
 }  // namespace

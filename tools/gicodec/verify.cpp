@@ -61,8 +61,7 @@ struct Report {
   std::vector<float> max_error;                     ///< by texture
   std::vector<std::vector<std::uint64_t>> largest;  ///< largest distance, by texture and channel
   std::vector<std::uint64_t> packets;               ///< by texture
-  std::set<std::pair<std::string, std::uint64_t>>
-      unseen;  ///< texture and frame of files not yet compared
+  std::set<std::string> unseen;                     ///< files not yet compared
 
   /// Findings about images of one file follow one another.
   void add(Finding finding) {
@@ -73,7 +72,7 @@ struct Report {
     }
     if (!finding.same() && std::exchange(last_same, false)) --same;
     if (!finding.good() && std::exchange(last_good, false)) --good;
-    if (!finding.file.empty()) unseen.erase({finding.of_file, finding.frame});
+    if (!finding.file.empty()) unseen.erase(finding.file);
     if (keep_all || !finding.good()) findings.push_back(std::move(finding));
   }
   /// Notes the largest distances of textures with an error bound.
@@ -95,6 +94,13 @@ std::vector<std::string> compare_given(DumpInfo given, DumpInfo stored) {
   return compare_headers(given, stored);
 }
 
+/// The file of a frame; null if none was given. A still is of the frame that has it.
+const FrameFile* file_of(const Sequence& sequence, std::uint64_t frame, const Report& report) {
+  const FrameFile& first = sequence.frames.front();
+  if (sequence.digits == 0 && report.unseen.contains(first.path)) return &first;
+  return sequence.find(frame);
+}
+
 Finding compare_frame(std::size_t id, const ContainerInput& input, const Report& report) {
   const std::uint64_t frame = input.frame();
   const auto& sequences = report.sequences;
@@ -107,7 +113,7 @@ Finding compare_frame(std::size_t id, const ContainerInput& input, const Report&
   const auto sequence =
       std::find_if(sequences.begin(), sequences.end(),
                    [&](const Sequence& candidate) { return candidate.name == texture.file; });
-  const FrameFile* file = sequence == sequences.end() ? nullptr : sequence->find(frame);
+  const FrameFile* file = sequence == sequences.end() ? nullptr : file_of(*sequence, frame, report);
   if (file == nullptr) {
     finding.missing = fmt::format("{} was not given", texture.file_name(frame));
     return finding;
@@ -130,7 +136,7 @@ void add_left_over(const std::vector<Sequence>& sequences, Report& report,
                    const std::string& path) {
   for (const Sequence& sequence : sequences) {
     for (const FrameFile& file : sequence.frames) {
-      if (report.unseen.count({sequence.name, file.frame}) == 0) continue;
+      if (!report.unseen.contains(file.path)) continue;
       Finding finding;
       finding.texture = finding.of_file = sequence.name;
       finding.frame = file.frame;
@@ -190,10 +196,23 @@ void check_frame(const ContainerInput& input, unsigned threads, Report& report) 
 
 Exit verify(const VerifyOptions& options, const Cli& cli) {
   ContainerInput input(options.input, options.decoder);
+  input.read_metadata();
   select_volume(input, options.volume);
   std::vector<Sequence> sequences;
   for (const std::string& path : options.files) require_exists(path);
-  if (!options.files.empty()) sequences = group_sequences(options.files, true);
+  if (!options.files.empty()) {
+    NumberOptions numbers{.allow_gaps = true};
+    for (const StoredTexture& texture : input.textures()) {
+      numbers.known.push_back({file_stem(texture),
+                               texture.digits,
+                               texture.extension,
+                               texture.separator,
+                               texture.base,
+                               texture.counts_sign,
+                               {}});
+    }
+    sequences = group_sequences(options.files, numbers);
+  }
   for (Sequence& sequence : sequences) {
     const auto named = [&](const StoredTexture& texture) {
       return file_stem(texture) == sequence.name;
@@ -231,7 +250,7 @@ Exit verify(const VerifyOptions& options, const Cli& cli) {
     fail(Exit::usage, "--max-error needs the dumps that {} was made from", input.path());
   }
   for (const Sequence& sequence : sequences) {
-    for (const FrameFile& file : sequence.frames) report.unseen.emplace(sequence.name, file.frame);
+    for (const FrameFile& file : sequence.frames) report.unseen.insert(file.path);
   }
   std::size_t frames = 0;
   std::string damage, cure;

@@ -47,9 +47,9 @@ class Reader final : public ImageReader {
 /// How many there are from the first on.
 template <typename Seek>
 int count(Seek&& seek) {
-  constexpr int kMost = 1000;
+  constexpr int kMax = 1000;
   int found = 1;
-  while (found < kMost && seek(found)) ++found;
+  while (found < kMax && seek(found)) ++found;
   return found;
 }
 

@@ -255,7 +255,7 @@ void check_picture(const Options& o) {
   if (o.output.empty()) return;
   tools::InputFiles inputs({o.stream});
   if (!o.dumps.empty()) {
-    for (const auto& sequence : tools::group_sequences({o.dumps}, true)) {
+    for (const auto& sequence : tools::group_sequences({o.dumps}, {.allow_gaps = true})) {
       for (const auto& file : sequence.frames) inputs.add(file.path);
     }
   }

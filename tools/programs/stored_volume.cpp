@@ -73,7 +73,7 @@ StoredVolume::StoredVolume(const std::string& folder, std::uint64_t frame)
     : path_(folder), kind_(find_traced_kind("probes")) {
   std::vector<NamedTexture> named;
   std::string others;
-  for (const auto& sequence : tools::group_sequences({folder}, true)) {
+  for (const auto& sequence : tools::group_sequences({folder}, {.allow_gaps = true})) {
     const auto* const file = sequence.find(frame);
     if (file == nullptr) {
       fail(Exit::bad_input, "{}: has no frame {} of texture {}; it holds {} to {}", folder, frame,

@@ -6,6 +6,7 @@
 #include "common/volume_words.h"
 #include "ddgi/scene_id.h"
 #include "dump/block_place.h"
+#include "dump/cure.h"
 #include "dump/dump.h"
 #include "dump/error.h"
 #include "dump/geometry_attributes.h"
@@ -221,9 +222,7 @@ class RecordingPlayer final : public Player {
 class DumpPlayer final : public Player {
  public:
   explicit DumpPlayer(const std::string& folder)
-      : sequences_(tools::group_sequences(
-            {folder}, false,
-            "\"gicodec encode --allow-gaps\" makes a container that can be played")) {
+      : sequences_(tools::group_sequences({folder}, {.cure = tools::Cure::play_gaps})) {
     recording = look_through(sequences_);
     std::vector<NamedTexture> named;
     std::vector<float> errors;
