@@ -96,8 +96,10 @@ TEST_F(CliFault, KilledEncoderLeavesAPartialContainer) {
     fs::remove_all(program_.path("out"));
     const Outcome decoded =
         program_.succeed({"decode", "rescued.gic", "-o", "out", "--allow-incomplete"});
-    EXPECT_NE(decoded.err.find(fmt::format("of frames 0-{}", kFrames - 1)), std::string::npos)
-        << decoded.err;
+    if (left.size() < whole.size()) {  // Else it was killed when all was written.
+      EXPECT_NE(decoded.err.find(fmt::format("of frames 0-{}", kFrames - 1)), std::string::npos)
+          << decoded.err;
+    }
     const auto files = program_.files("out");
     if (share > 0.5) {
       EXPECT_GE(files.size(), 4U);
