@@ -268,6 +268,39 @@ TEST_F(CliCures, ManyFiles) {
   EXPECT_EQ(program_.files("out"), program_.files("in"));
 }
 
+TEST_F(CliCures, FilesOfOtherKinds) {
+  for (const char* name : {"in/a.exr", "more/b.exr"}) {
+    fs::create_directories(fs::path(path(name)).parent_path());
+    write(name, foreign(Format::R16_SFLOAT));
+  }
+  fs::create_directories(path("in/sub"));
+  write_bytes(path("in/notes.txt"), {});
+  program_.succeed({"preview", "in/a.exr", "-o", "in/b.png"});
+  follow(Cure::name_others, "b.png, notes.txt, sub/; name them to take them",
+         {"encode", "-o", "x.gic", "in"}, {{"encode", "-o", "x.gic", "in", "in/b.png"}}, Exit::ok);
+  program_.succeed({"verify", "x.gic", "in/a.exr", "in/b.png"});
+  fs::remove(path("in/a.exr"));
+  follow(Cure::name_others, {"encode", "-o", "x.gic", "in"},
+         {{"encode", "-o", "x.gic", "in/b.png"}});
+  fs::remove_all(path("in"));
+  fs::create_directories(path("in"));
+
+  write("in/a.0000.exr", foreign(Format::R16_SFLOAT));
+  write("in/a.0001.exr", foreign(Format::R16_SFLOAT, {4, 4, 1}));
+  follow(Cure::stills, {"encode", "-o", "x.gic", "in"},
+         {{"encode", "-o", "x.gic", "in", "--stills"}});
+  expect_back();
+
+  write("in/a.dds", foreign(Format::R8G8B8A8_UNORM));
+  const auto size = fs::file_size(path("in/a.dds"));
+  fs::resize_file(path("in/a.dds"), size + 11);
+  follow(Cure::cut_rest, to_cure(Cure::cut_rest, size, "in/a.dds"), {"encode", "-o", "x.gic", "in"},
+         {});
+  fs::resize_file(path("in/a.dds"), size);
+  program_.succeed({"encode", "-o", "x.gic", "in"});
+  expect_back();
+}
+
 TEST_F(CliCures, ImagesOfAFile) {
   write_levels("in/a.0000.ktx2", 3);
   write_levels("in/a.0001.ktx2", 1);

@@ -245,28 +245,29 @@ TEST(TextureFile, WhatCannotBeReadIsNamed) {
     std::uint32_t word;
     const char* part;
   };
-  for (const Case& c : {Case{"x.dds", 28, 4, "is truncated"},
-                        Case{"x.dds", 28, 5, "5 levels of 8x8x1 texels"},
-                        Case{"x.dds", 136, 4, "is truncated"},
-                        Case{"x.dds", 4, 123, "damaged: size 123"},
-                        Case{"x.dds", 76, 31, "damaged: pixel format size 31"},
-                        Case{"x.dds", 140, 0, "is damaged"},
-                        Case{"x.dds", 140, 2, "is truncated"},
-                        Case{"x.dds", 16, 7, "check its format"},
-                        Case{"x.dds", 16, 0xFFFFFFFF, "x.dds"},
-                        Case{"x.dds", 0, 1, "is not a DDS file"},
-                        Case{"x.ktx2", 40, 5, "damaged: 5 levels of 8x8x1 texels"},
-                        Case{"x.ktx2", 44, 1, "holds BasisLZ"},
-                        Case{"x.ktx2", 44, 2, "a level is damaged: Zstandard says"},
-                        Case{"x.ktx2", 44, 3, "a level is damaged: ZLIB says"},
-                        Case{"x.ktx2", 44, 9, "is supercompressed by scheme 9"},
-                        Case{"x.ktx2", 36, 6, "level 0 has 256 bytes, and 8x8x1 texels"},
-                        Case{"x.ktx2", 36, 2, "is damaged: 2 faces"},
-                        Case{"x.ktx2", 20, 0, "a width of 0"},
-                        Case{"x.ktx2", 12, 0, "VkFormat 0"},
-                        Case{"x.ktx2", 0, 0, "is not a KTX2 file"},
-                        Case{"x.ktx2", 52, 0xFFFFFFFF, "is damaged"},
-                        Case{"x.ktx2", 60, 4, "keys and values are damaged"}}) {
+  for (const Case& c :
+       {Case{"x.dds", 28, 4, "is truncated"},
+        Case{"x.dds", 28, 5, "5 levels of 8x8x1 texels"},
+        Case{"x.dds", 136, 4, "is truncated"},
+        Case{"x.dds", 4, 123, "damaged: size 123"},
+        Case{"x.dds", 76, 31, "damaged: pixel format size 31"},
+        Case{"x.dds", 140, 0, "is damaged"},
+        Case{"x.dds", 140, 2, "is truncated"},
+        Case{"x.dds", 16, 7, "has 32 bytes behind the texels that its head describes"},
+        Case{"x.dds", 16, 0xFFFFFFFF, "x.dds"},
+        Case{"x.dds", 0, 1, "is not a DDS file"},
+        Case{"x.ktx2", 40, 5, "damaged: 5 levels of 8x8x1 texels"},
+        Case{"x.ktx2", 44, 1, "holds BasisLZ"},
+        Case{"x.ktx2", 44, 2, "a level is damaged: Zstandard says"},
+        Case{"x.ktx2", 44, 3, "a level is damaged: ZLIB says"},
+        Case{"x.ktx2", 44, 9, "is supercompressed by scheme 9"},
+        Case{"x.ktx2", 36, 6, "level 0 has 256 bytes, and 8x8x1 texels"},
+        Case{"x.ktx2", 36, 2, "is damaged: 2 faces"},
+        Case{"x.ktx2", 20, 0, "a width of 0"},
+        Case{"x.ktx2", 12, 0, "VkFormat 0"},
+        Case{"x.ktx2", 0, 0, "is not a KTX2 file"},
+        Case{"x.ktx2", 52, 0xFFFFFFFF, "is damaged"},
+        Case{"x.ktx2", 60, 4, "keys and values are damaged"}}) {
     SCOPED_TRACE(c.part);
     auto bytes = file_of(directory, c.name, dump);
     patch(bytes, c.at, c.word);

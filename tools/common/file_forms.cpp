@@ -43,7 +43,11 @@ void own_file(StoredTexture& texture) {
 
 void set_files(StoredTexture& texture, ImageKind kind) {
   if (kind_of(texture) == kind) return;
-  if (kind == ImageKind::raw) own_file(texture);
+  // Only these two place levels and faces alike.
+  const auto has_levels = [](ImageKind one) {
+    return one == ImageKind::dds || one == ImageKind::ktx2;
+  };
+  if (!has_levels(kind) || !has_levels(kind_of(texture))) own_file(texture);
   texture.extension = std::ranges::find(kForms, kind, &Form::kind)->ending;
   std::set<std::string> unsaid;
   const auto remove = [&](const Attribute& attribute) {

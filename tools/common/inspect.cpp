@@ -16,17 +16,17 @@ namespace {
 void require_same_shape(const DumpInfo& first, const DumpInfo& other, const std::string& first_path,
                         const std::string& path) {
   if (other.image != first.image || other.place != first.place) {
-    fail(Exit::bad_input, "{}: has other images than {}: {} in the place of {}", path, first_path,
-         image_words(other), image_words(first));
+    fail(Exit::bad_input, "{}: has other images than {}: {} in the place of {}; {}", path,
+         first_path, image_words(other), image_words(first), to_cure(Cure::stills));
   }
   if (other.desc != first.desc) {
-    fail(Exit::bad_input, "{}: has another shape than {}: {} instead of {}", path, first_path,
-         shape_text(other.desc), shape_text(first.desc));
+    fail(Exit::bad_input, "{}: has another shape than {}: {} instead of {}; {}", path, first_path,
+         shape_text(other.desc), shape_text(first.desc), to_cure(Cure::stills));
   }
   if (other.channels != first.channels) {
-    fail(Exit::bad_input, "{}: has other channels than {}: {} instead of {}", path, first_path,
+    fail(Exit::bad_input, "{}: has other channels than {}: {} instead of {}; {}", path, first_path,
          to_string(other.channels, other.desc.record.format),
-         to_string(first.channels, first.desc.record.format));
+         to_string(first.channels, first.desc.record.format), to_cure(Cure::stills));
   }
 }
 

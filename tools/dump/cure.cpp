@@ -15,6 +15,8 @@ std::string_view cure_text(Cure cure) noexcept {
       return "check its format, or give --vk-format";
     case Cure::check_format:
       return "check --vk-format, or leave it out";
+    case Cure::cut_rest:
+      return "\"truncate -s {} {}\" cuts them off";
     case Cure::map_channels:
       return "use {}";
     case Cure::pick_channels:
@@ -47,6 +49,8 @@ std::string_view cure_text(Cure cure) noexcept {
       return "rename one of them, or give one folder at a time";
     case Cure::fewer_files:
       return "name those to take";
+    case Cure::name_others:
+      return "name them to take them";
     case Cure::one_kind:
       return "give files of one kind at a time";
     case Cure::fewer_textures:

@@ -127,20 +127,26 @@ bool are_alike(const std::vector<const Input*>& files) {
   }
 }
 
-constexpr const char* kNoRun = "they are no run";
+constexpr const char* kUnlike = "their shapes or formats differ";
 
-/// Why numbers that files alone differ in are none of frames; empty if they are.
-std::string why_no_frames(const std::vector<const Input*>& files, const NumberOptions& options) {
+bool is_run(const std::vector<const Input*>& files) {
+  std::set<std::int64_t> numbers;
+  for (const Input* file : files) numbers.insert(file->parsed.value());
+  return static_cast<std::uint64_t>(*numbers.rbegin() - *numbers.begin()) + 1 == numbers.size();
+}
+
+/// Why numbers that files alone differ in are none of frames; empty if they are. `alone`: there are
+/// other numbered files, and none of that number.
+std::string why_no_frames(const std::vector<const Input*>& files, const NumberOptions& options,
+                          bool alone) {
   const ParsedName& any = files.front()->parsed;
   if (any.separator == ".") return "";
   if (files.size() == 1) {
     const bool is_long = any.digits() >= (any.separator.empty() ? 4U : 3U);
-    return is_long ? "" : "it is the only one";
+    return is_long && !alone ? "" : "it is the only one";
   }
-  std::set<std::int64_t> numbers;
   bool padded = false;
   for (const Input* file : files) {
-    numbers.insert(file->parsed.value());
     const std::string& number = file->parsed.number;
     padded =
         padded || (file->parsed.digits() > 1 && number.find_first_not_of('-') == number.find('0'));
@@ -148,10 +154,27 @@ std::string why_no_frames(const std::vector<const Input*>& files, const NumberOp
   const bool named_so =
       any.separator.empty() && any.digits() < 4 && std::ranges::any_of(any.name, is_digit);
   if (named_so) return "their names have other numbers";
-  const auto span = static_cast<std::uint64_t>(*numbers.rbegin() - *numbers.begin()) + 1;
-  if (!padded && !options.allow_gaps && span != numbers.size()) return kNoRun;
-  if (!are_alike(files)) return "their shapes or formats differ";
+  if (!padded && !options.allow_gaps && !is_run(files)) return "they are no run";
+  if (!are_alike(files)) return kUnlike;
   return "";
+}
+
+/// Says what numbers of several files were taken for, unless they stand behind a point.
+void note_guess(const std::vector<const Input*>& files, const std::string& why,
+                std::vector<std::string>& remarks) {
+  const ParsedName& any = files.front()->parsed;
+  if (any.separator == "." || files.size() == 1) return;
+  std::string line = fmt::format("{} and {} more: ", files.front()->path, files.size() - 1);
+  if (why.empty()) {
+    line += "their numbers are taken for those of frames; " + to_cure(Cure::stills);
+  } else {
+    line += "taken for stills, since " + why;
+    if (why != kUnlike) {
+      line += "; " + to_cure(Cure::frames_from, any.name + any.separator,
+                             is_run(files) ? "" : " --allow-gaps");
+    }
+  }
+  remarks.push_back(std::move(line));
 }
 
 /// Returns numbers that are no frame's to the names.
@@ -171,40 +194,56 @@ void settle_numbers(std::vector<Input>& inputs, const NumberOptions& options,
     }
     groups[{parsed.name, parsed.separator, parsed.extension}].push_back(&input);
   }
+  std::map<std::int64_t, std::size_t> with_number;
+  for (const auto& [key, files] : groups) {
+    for (const Input* file : files) ++with_number[file->parsed.value()];
+  }
   for (auto& [key, files] : groups) {
-    const ParsedName any = files.front()->parsed;
-    const std::string why = why_no_frames({files.begin(), files.end()}, options);
-    const bool guessed = any.separator != "." && files.size() > 1;
-    if (guessed && remarks != nullptr) {
-      remarks->push_back(
-          why.empty()
-              ? fmt::format("{} and {} more: their numbers are taken for those of frames; {}",
-                            files.front()->path, files.size() - 1, to_cure(Cure::stills))
-              : fmt::format("{} and {} more: taken for stills, since {}; {}", files.front()->path,
-                            files.size() - 1, why,
-                            to_cure(Cure::frames_from, any.name + any.separator,
-                                    why == kNoRun ? " --allow-gaps" : "")));
-    }
+    const std::vector<const Input*> own(files.begin(), files.end());
+    const bool alone = groups.size() > 1 && with_number[own.front()->parsed.value()] == 1;
+    const std::string why = why_no_frames(own, options, alone);
+    if (remarks != nullptr) note_guess(own, why, *remarks);
     if (why.empty()) continue;
     for (Input* file : files) file->parsed.keep_number();
   }
 }
 
+/// What of a directory is not read.
+struct LeftOut {
+  std::size_t count = 0;
+  std::string names;  ///< of the first few
+
+  void add(const std::string& name) {
+    constexpr std::size_t kNamed = 4;
+    if (count++ < kNamed) names += (names.empty() ? "" : ", ") + name;
+  }
+  /// "and 3 more".
+  [[nodiscard]] std::string text() const {
+    const auto named = static_cast<std::size_t>(std::ranges::count(names, ',')) + 1;
+    return count > named ? fmt::format("{} and {} more", names, count - named) : names;
+  }
+};
+
 /// Takes a directory's entry if it is a file that is read.
 void take_entry(const fs::directory_entry& entry, std::vector<std::string>& files,
-                std::vector<std::string>* remarks) {
+                LeftOut& left_out) {
   const std::string name = entry.path().filename().string();
   const auto kind = image_kind(name);
-  // Files without an extension count as EXR only if the caller names them.
-  if (!kind || !is_written(*kind) || !entry.path().has_extension() || name[0] == '.') return;
   std::error_code error;
-  if (entry.is_symlink(error) && !fs::exists(entry.path(), error)) {
-    if (remarks != nullptr) {
-      remarks->push_back(entry.path().string() + ": is a link to nothing, and left out");
+  const bool folder = entry.is_directory(error);
+  // Files without an extension count as EXR only if the caller names them.
+  const bool image = kind && entry.path().has_extension() && !folder;
+  if (name[0] == '.' && !image) return;
+  const bool sidecar = entry.path().extension() == ".json";
+  if (image && is_written(*kind) && name[0] != '.') {
+    if (!entry.is_symlink(error) || fs::exists(entry.path(), error)) {
+      files.push_back(entry.path().string());
+    } else {
+      left_out.add(name + " (a link to nothing)");
     }
-    return;
+  } else if (!sidecar) {
+    left_out.add(folder ? name + "/" : name);
   }
-  files.push_back(entry.path().string());
 }
 
 std::vector<std::string> expand_directories(const std::vector<std::string>& paths,
@@ -217,15 +256,23 @@ std::vector<std::string> expand_directories(const std::vector<std::string>& path
       continue;
     }
     const std::size_t first = files.size();
+    LeftOut left_out;
     for (const auto& entry : fs::directory_iterator(path, error)) {
-      take_entry(entry, files, remarks);
+      take_entry(entry, files, left_out);
       if (files.size() - first <= kMaxFiles) continue;
       fail(Exit::bad_input, "{}: has more than {} dumps; {}", path, kMaxFiles,
            to_cure(Cure::fewer_files));
     }
     if (error) fail(Exit::io, "{}: cannot be listed: {}", path, error.message());
     if (files.size() == first) {
-      fail(Exit::bad_input, "{}: has no .exr, .dds, .ktx2, .raw or .bin files", path);
+      fail(Exit::bad_input, "{}: has no .exr, .dds, .ktx2, .raw or .bin files{}", path,
+           left_out.count > 0
+               ? fmt::format(", but {}; {}", left_out.text(), to_cure(Cure::name_others))
+               : "");
+    }
+    if (left_out.count > 0 && remarks != nullptr) {
+      remarks->push_back(
+          fmt::format("{}: leaves out {}; {}", path, left_out.text(), to_cure(Cure::name_others)));
     }
     std::sort(files.begin() + static_cast<std::ptrdiff_t>(first), files.end());
   }
@@ -319,12 +366,23 @@ std::vector<Sequence> group_sequences(const std::vector<std::string>& paths,
     fail(Exit::usage, "--frames-from {}: has no # where the number is, as in \"irr_#\"",
          options.pattern);
   }
+  if (!options.pattern.empty() && options.stills) {
+    fail(Exit::usage, "--stills and --frames-from exclude each other");
+  }
   std::vector<Input> inputs;
   for (const std::string& path : expand_directories(paths, remarks)) {
     (void)require_image_kind(path);
     inputs.push_back({path, parse(path)});
   }
   settle_numbers(inputs, options, remarks);
+  const auto is_numbered = [](const Input& input) { return !input.parsed.number.empty(); };
+  if (!options.pattern.empty() && std::ranges::none_of(inputs, is_numbered)) {
+    fail(
+        Exit::usage,
+        "--frames-from \"{}\": no file has a number there; a frame's number is the last of a name, "
+        "before the extension",
+        options.pattern);
+  }
   std::int64_t base = options.known.empty() ? 0 : options.known.front().base;
   for (const Input& input : inputs) {
     if (options.known.empty()) base = std::min(base, input.parsed.value());
@@ -344,8 +402,8 @@ std::vector<Sequence> group_sequences(const std::vector<std::string>& paths,
     files[place->second].push_back(&input);
     Sequence& sequence = sequences[place->second];
     if (sequence.extension != parsed.extension) {
-      fail(Exit::bad_input, "{}: texture {} has files of type .{} as well", path, parsed.name,
-           sequence.extension);
+      fail(Exit::bad_input, "{}: texture {} has files of type .{} as well; {}", path, parsed.name,
+           sequence.extension, to_cure(Cure::rename));
     }
     if (sequence.separator != parsed.separator) {
       fail(Exit::bad_input, "{}: texture {} has {} as well; {}", path, parsed.name,
@@ -399,7 +457,9 @@ std::string question_of(const std::vector<Sequence>& sequences) {
     alike[pattern].push_back(&sequence);
   }
   for (const auto& [pattern, found] : alike) {
-    if (found.size() < kMany || pattern.find('#') == std::string::npos) continue;
+    // A number that is last was looked at, and is said.
+    const bool last = pattern.size() > 1 && pattern.ends_with('#');
+    if (found.size() < kMany || last || pattern.find('#') == std::string::npos) continue;
     return fmt::format(
         "{} textures of one frame differ only in a number, such as {} and {}; if these are frames "
         "of one texture, put the number last: NAME.FFFF.{}",

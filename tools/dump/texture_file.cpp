@@ -76,6 +76,12 @@ void check_bytes(const TextureFile& file, const TextureHead& head, Format format
          "{}: is truncated: its texels take {} bytes from byte {} on, and it has {}", file.path(),
          wanted, head.offset, file.size());
   }
+  if (head.format == format && file.size() - head.offset > wanted) {
+    fail(Exit::bad_input,
+         "{}: has {} bytes behind the texels that its head describes, which would be lost; {}",
+         file.path(), file.size() - head.offset - wanted,
+         to_cure(Cure::cut_rest, head.offset + wanted, file.path()));
+  }
   if (head.bytes != wanted || file.size() - head.offset > wanted) {
     fail(Exit::bad_input, "{}: has {} bytes from its first texel on, but {} make its {}; {}",
          file.path(), std::max(head.bytes, file.size() - head.offset), wanted,

@@ -115,6 +115,20 @@ std::vector<std::vector<std::size_t>> files_of_frame(const ContainerInput& input
   return files;
 }
 
+/// True if files that were compressed are written anew.
+bool is_any_anew(const ContainerInput& input) {
+  for (std::size_t i = 0; i < input.textures().size(); ++i) {
+    const StoredTexture& texture = input.textures()[i];
+    const auto is_set = [&](const char* name, const char* plain) {
+      const Attribute* found = find_attribute(texture.info.attributes, name);
+      return found != nullptr && found->value != plain;
+    };
+    if (!input.is_selected(i) || !texture.made_of_files) continue;
+    if (is_set("compression", "0x00") || is_set(kKtx2Scheme, "")) return true;
+  }
+  return false;
+}
+
 Exit decode(const DecodeOptions& options, const Cli& cli) {
   const FrameRange range = frame_range_from_string(options.frames);
   ContainerInput input(options.input, options.decoder);
@@ -175,7 +189,8 @@ Exit decode(const DecodeOptions& options, const Cli& cli) {
   for (std::size_t i = 0; i < input.textures().size(); ++i) {
     if (!input.is_selected(i)) continue;
     const StoredTexture& texture = input.textures()[i];
-    if (const std::string stem = file_stem(texture); stem != texture.name) {
+    const std::string stem = file_stem(texture);
+    if (stem != texture.file && texture.info.place == ImagePlace{}) {
       remark(fmt::format("texture {}: its files are named {}, since its name cannot be theirs",
                          texture.name, stem));
     }
@@ -192,6 +207,11 @@ Exit decode(const DecodeOptions& options, const Cli& cli) {
       remark(fmt::format("texture {}: {} inactive probes were not stored and are zero",
                          texture.name, texture.inactive.size()));
     }
+  }
+  if (is_any_anew(input)) {
+    remark(
+        "EXR files and packed KTX2 files are compressed anew: the same contents, maybe other "
+        "bytes");
   }
   const ContainerDescription& description = input.description();
   for (std::size_t v = 0; v < description.volumes.size(); ++v) {

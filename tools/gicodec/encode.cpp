@@ -312,7 +312,10 @@ Exit encode(const EncodeOptions& options, const Cli& cli) {
   for (const std::string& line : remarks) {
     if (!silent) remark(line);
   }
-  if (const auto question = question_of(sequences); !question.empty() && !silent) remark(question);
+  const bool told = options.geometry.numbers.stills || !options.geometry.numbers.pattern.empty();
+  if (const auto question = question_of(sequences); !question.empty() && !silent && !told) {
+    remark(question);
+  }
   if (const auto question = layout_question(options.geometry, sequences);
       !question.empty() && !silent)
     remark(question);

@@ -139,8 +139,12 @@ Loaded load(const PreviewOptions& options, bool quiet) {
   }
   const auto sequences = group_sequences({options.input});
   check_names(options.geometry, sequences);
-  return {read_dump(options.input, hints_for(options.geometry, sequences.front().name)),
-          options.input};
+  const Hints hints =
+      settle_formats({&options.input, 1}, hints_for(options.geometry, sequences.front().name));
+  auto images = read_dumps(options.input, hints);
+  const std::string what =
+      images.size() == 1 ? options.input : options.input + ", " + image_words(images.front().info);
+  return {std::move(images.front()), what};
 }
 
 Exit preview(const PreviewOptions& options, const Cli& cli) {
