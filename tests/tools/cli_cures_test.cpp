@@ -221,8 +221,14 @@ TEST_F(CliCures, NumbersInNames) {
   follow(Cure::stills, plain, {with({"--stills"})}, Exit::ok);
   expect_back();
   sequence({"a_1.exr", "a_2.exr", "a_11.exr", "a_12.exr"});
-  follow(Cure::frames_from, to_cure(Cure::frames_from, "a_", " --allow-gaps"), plain,
+  follow(Cure::frames_from, to_cure(Cure::frames_from, "'a_#'", " --allow-gaps"), plain,
          {with({"--frames-from", "a_#", "--allow-gaps"})}, Exit::ok);
+  expect_back();
+
+  // Names are no commands.
+  sequence({"$(touch x)_1.exr", "$(touch x)_11.exr"});
+  follow(Cure::frames_from, to_cure(Cure::frames_from, "'$(touch x)_#'", " --allow-gaps"), plain,
+         {with({"--frames-from", "$(touch x)_#", "--allow-gaps"})}, Exit::ok);
   expect_back();
 
   sequence({"a_0001.exr", "a_0002.exr", "a.0003.exr"});

@@ -139,6 +139,8 @@ TEST(Sequence, NegativeFrames) {
     EXPECT_EQ(padded[0].file_name(file.frame), file.path);
   }
   EXPECT_NE(message_of({"foo.-01.exr", "foo.0000.exr"}, true).find("name it"), std::string::npos);
+  EXPECT_EQ(frame_file_name("foo", 4, ~std::uint64_t{0}, "exr"), "foo.18446744073709551615.exr");
+  EXPECT_EQ(frame_file_name("foo", 4, 0, "exr", "_", -12), "foo_-0012.exr");
   // Behind no other separator it is one.
   EXPECT_EQ(group_sequences({"foo-003.exr"})[0].base, 0);
   EXPECT_EQ(group_sequences({"-003.exr"})[0].name, "-003");
@@ -207,6 +209,15 @@ TEST(Sequence, FilesOfOtherShapesAreStills) {
   EXPECT_EQ(group_sequences(paths, {}, &remarks).size(), 1U);
   ASSERT_EQ(remarks.size(), 1U);
   EXPECT_NE(remarks[0].find("taken for those of frames; --stills"), std::string::npos);
+}
+
+// Patterns of many stars take no longer than others.
+TEST(Sequence, PatternsOfManyStars) {
+  const std::string name = std::string(240, 'a') + "1.exr";
+  std::string pattern;
+  for (int i = 0; i < 100; ++i) pattern += "*a";
+  EXPECT_EQ(group_sequences({name}, {.pattern = pattern + "*#"})[0].digits, 1U);
+  EXPECT_THROW((void)group_sequences({name}, {.pattern = pattern + "*b#"}), Error);
 }
 
 TEST(Sequence, LinksToNothingAreLeftOut) {

@@ -81,12 +81,20 @@ StoredTexture ContainerInput::stored(const TextureEntry& entry) const {
   return texture;
 }
 
-void ContainerInput::read_metadata() {
+void ContainerInput::read_metadata(bool allow_damaged) {
   for (std::size_t i = 0; i < textures_.size(); ++i) {
     auto beside = player_->metadata(static_cast<std::uint8_t>(i));
-    if (beside.status() == Status::truncated) return;  // No packet can follow.
-    beside_[i] = take(std::move(beside),
-                      fmt::format("{}: metadata of texture {}", path_, textures_[i].name));
+    const Status status = beside.status();
+    if (status == Status::truncated) return;  // No packet can follow.
+    const std::string where = fmt::format("{}: metadata of texture {}", path_, textures_[i].name);
+    if (exit_code(status) == Exit::bad_input && !allow_damaged) {
+      fail(Exit::bad_input, "{}: {}; {}", where, to_string(status), to_cure(Cure::incomplete));
+    }
+    if (exit_code(status) == Exit::bad_input) {
+      remark(fmt::format("{}: {}; its files lack it", where, to_string(status)));
+      continue;
+    }
+    beside_[i] = take(std::move(beside), where);
     if (beside_[i].empty() || !textures_[i].no_dump.empty()) continue;
     TextureEntry entry = description().textures[i];
     entry.metadata.insert(entry.metadata.end(), beside_[i].begin(), beside_[i].end());
@@ -323,14 +331,14 @@ std::string recovery(const ContainerInput& input) {
     const std::size_t volume = input.description().textures[i].volume;
     if (!has_dumps(input, volume)) continue;
     if (++dumps > 1) continue;
-    flags = fmt::format(" --volume {}", volume_name(input.description(), volume));
+    flags = fmt::format(" --volume {}", shell_word(volume_name(input.description(), volume)));
   }
   const bool drawn = std::ranges::any_of(
       input.description().volumes,
       [](const VolumeEntry& volume) { return volume.kind != kKindProbes && is_drawn(volume); });
   if (dumps == 0 && drawn) {
-    return fmt::format("\"gi-render --stream {}{}\" draws what comes before", input.argument(),
-                       input.cut_off() ? " --allow-incomplete" : "");
+    return fmt::format("\"gi-render --stream {}{}\" draws what comes before",
+                       shell_word(input.argument()), input.cut_off() ? " --allow-incomplete" : "");
   }
   if (dumps == 0) return "no dumps can be made of what is there; get it again";
   if (dumps == input.textures().size()) flags.clear();
@@ -344,7 +352,7 @@ std::string recovery(const ContainerInput& input) {
     }
   }
   return fmt::format("\"gicodec decode {}{} -o DIR\" gives back what comes before",
-                     input.argument(), flags);
+                     shell_word(input.argument()), flags);
 }
 
 void require_distinct_files(const ContainerInput& input) {
@@ -363,11 +371,13 @@ void require_distinct_files(const ContainerInput& input) {
     const bool volumes = own != description.textures[*other].volume;
     fail(Exit::bad_input, "{}: textures {} and {} have files of the same names{}", input.path(),
          input.textures()[*other].name, texture.name,
-         volumes ? fmt::format("; {}{}", to_cure(Cure::one_volume, volume_choice(description, own)),
-                               volume_choice(description, own) == volume_name(description, own)
-                                   ? ""
-                                   : ", by its number, since others have its name")
-                 : "");
+         volumes
+             ? fmt::format("; {}{}",
+                           to_cure(Cure::one_volume, shell_word(volume_choice(description, own))),
+                           volume_choice(description, own) == volume_name(description, own)
+                               ? ""
+                               : ", by its number, since others have its name")
+             : "");
   }
 }
 
@@ -393,7 +403,7 @@ void select_dumps(ContainerInput& input, const std::string& volume) {
   }
   if (!why_not.empty()) {
     fail(Exit::bad_input, "{}: {}{}", input.path(), why_not,
-         other_volume.empty() ? "" : "; " + to_cure(Cure::other_volume, other_volume));
+         other_volume.empty() ? "" : "; " + to_cure(Cure::other_volume, shell_word(other_volume)));
   }
   require_distinct_files(input);
 }

@@ -39,8 +39,9 @@ class ContainerInput {
   [[nodiscard]] std::uint64_t bytes_read() const { return source_->bytes_read(); }
 
   /// Reads what is kept of files beside the description, for programs that show or write files.
-  /// Call it before the functions below.
-  void read_metadata();
+  /// Call it before the functions below. Throws for damaged metadata unless `allow_damaged`, which
+  /// leaves them out and says so.
+  void read_metadata(bool allow_damaged = false);
   /// After read_metadata(): a texture's.
   [[nodiscard]] const Metadata& beside(std::size_t texture) const { return beside_[texture]; }
   /// Makes all textures decode to files of that kind (file_forms.h).

@@ -168,8 +168,7 @@ DumpInfo StoredTexture::decoded_info(std::uint64_t frame) const {
 }
 
 std::string StoredTexture::file_name(std::uint64_t frame) const {
-  return frame_file_name(file_stem(*this), digits, static_cast<std::int64_t>(frame) + base,
-                         extension, separator, counts_sign);
+  return frame_file_name(file_stem(*this), digits, frame, extension, separator, base, counts_sign);
 }
 
 std::string StoredTexture::lacks() const {

@@ -42,7 +42,7 @@ std::string_view cure_text(Cure cure) noexcept {
     case Cure::stills:
       return "--stills makes a texture of each";
     case Cure::frames_from:
-      return "--frames-from \"{}#\"{} takes their numbers for those of frames";
+      return "--frames-from {}{} takes their numbers for those of frames";
     case Cure::play_gaps:
       return "\"gicodec encode --allow-gaps\" makes a container that can be played";
     case Cure::one_folder:

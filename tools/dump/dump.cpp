@@ -69,7 +69,8 @@ ImageKind require_image_kind(const std::string& path) {
            std::make_error_code(std::errc::no_such_file_or_directory).message());
     }
     if (!is_container_file(path)) fail(Exit::bad_input, "{}: is not a .gic container", path);
-    fail(Exit::bad_input, "{}: is a container; {}", path, to_cure(Cure::decode_first, path));
+    fail(Exit::bad_input, "{}: is a container; {}", path,
+         to_cure(Cure::decode_first, shell_word(path)));
   }
   fail(Exit::bad_input,
        "{}: is named like no image that is read: .exr, .dds, .ktx2, .raw, .bin, .png, .tif, .tiff, "

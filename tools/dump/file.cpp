@@ -320,11 +320,11 @@ void write_file(const std::string& path, std::span<const std::byte> bytes, Exist
 void make_directory(const std::string& path) {
   std::error_code error;
   fs::create_directories(path, error);
-  if (!fs::is_directory(path)) {
-    fail(
-        Exit::io, "{}: cannot make this directory: {}", path,
-        fs::exists(path) || !error ? "a file of this name exists; name a folder" : error.message());
-  }
+  std::error_code other;
+  if (fs::is_directory(path, other)) return;
+  const bool there = !error || fs::exists(path, other);
+  fail(Exit::io, "{}: cannot make this directory: {}", path,
+       there ? "a file of this name exists; name a folder" : error.message());
 }
 
 OutputDirectory::OutputDirectory(std::string path) : path_(std::move(path)) {

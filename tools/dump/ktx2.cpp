@@ -41,6 +41,15 @@ bool is_ktx2(std::span<const std::byte> fixed) {
        to_cure(Cure::transcode));
 }
 
+/// Throws if levels claim to unpack to more than packed ones do.
+void check_unpacked(const TextureHead& head, const std::string& path) {
+  constexpr std::uint64_t kZstdRatio = 100000, kZlibRatio = 2000;
+  std::uint64_t bytes = 0;
+  for (const StoredLevel& level : head.stored) bytes += level.unpacked;
+  if (head.scheme == Scheme::none) return;
+  check_image_bytes(bytes, head.scheme == Scheme::zlib ? kZlibRatio : kZstdRatio, path);
+}
+
 /// `fixed`: the first kFixedBytes bytes of a file.
 TextureHead parse(std::span<const std::byte> fixed, const std::string& path) {
   TextureHead head;
@@ -225,6 +234,7 @@ TextureHead read_ktx2_head(TextureFile& file) {
     }
   }
   if (!fault.empty()) fail(Exit::bad_input, "{}: its KTX2 header is damaged: {}", path, fault);
+  check_unpacked(head, path);
   const auto descriptor = file.read(word_at(start, kDfdOffset), static_cast<std::size_t>(dfd));
   if (word_at(descriptor, 0) != dfd) {
     fail(Exit::bad_input, "{}: its data format descriptor is damaged: it says {} bytes, not {}",

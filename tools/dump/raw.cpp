@@ -181,8 +181,9 @@ TextureHead read_raw_head(TextureFile& file, const Hints& hints) {
   if (!has_own && !has_shared) {
     const bool described = hints.format && hints.extent;
     if (!hints.desc && !described) {
-      fail(Exit::bad_input, "{}: has no sidecar {}, or {} for all frames, that describes it; {}",
-           file.path(), own, shared, to_cure(Cure::describe_raw));
+      fail(Exit::bad_input, "{}: has no sidecar {}{}, that describes it; {}", file.path(), own,
+           own == shared ? "" : fmt::format(", or {} for all frames", shared),
+           to_cure(Cure::describe_raw));
     }
     head.texels = hints.desc ? texels_of(*hints.desc) : *hints.extent;
     head.volume = !hints.desc && head.texels.z > 1;

@@ -196,10 +196,10 @@ class Resolver {
     for (const char wanted : letters) {
       const auto at = std::ranges::find_if(
           found, [&](const FoundChannel& channel) { return channel.name.ends_with(wanted); });
-      text += fmt::format("{}{}={}", text.empty() ? "--channels " : ",", wanted,
+      text += fmt::format("{}{}={}", text.empty() ? "" : ",", wanted,
                           at == found.end() ? "NAME" : at->name);
     }
-    return text;
+    return "--channels " + shell_word(text);
   }
 
   /// True if the file has a channel of exponents; else R, G and B are values.

@@ -76,15 +76,26 @@ struct Input {
   ParsedName parsed;
 };
 
-/// True if `text` is what a pattern stands for, in which * is any text.
+/// True if `text` is what a pattern stands for, in which * is any text. Only the last star takes
+/// more than it did at first, so that time is bounded by the product of both sizes.
 bool matches(std::string_view text, std::string_view pattern) {
-  const std::size_t star = pattern.find('*');
-  if (star == std::string_view::npos) return text == pattern;
-  if (!text.starts_with(pattern.substr(0, star))) return false;
-  for (std::size_t at = star; at <= text.size(); ++at) {
-    if (matches(text.substr(at), pattern.substr(star + 1))) return true;
+  std::size_t at = 0, next = 0;
+  std::optional<std::size_t> star;
+  std::size_t resume = 0;
+  while (at < text.size()) {
+    if (next < pattern.size() && pattern[next] == '*') {
+      star = next++;
+      resume = at;
+    } else if (next < pattern.size() && pattern[next] == text[at]) {
+      ++next, ++at;
+    } else if (star) {
+      next = *star + 1;
+      at = ++resume;
+    } else {
+      return false;
+    }
   }
-  return false;
+  return pattern.find_first_not_of('*', next) == std::string_view::npos;
 }
 
 /// True if the number of a file stands where a pattern has its #.
@@ -170,7 +181,7 @@ void note_guess(const std::vector<const Input*>& files, const std::string& why,
   } else {
     line += "taken for stills, since " + why;
     if (why != kUnlike) {
-      line += "; " + to_cure(Cure::frames_from, any.name + any.separator,
+      line += "; " + to_cure(Cure::frames_from, shell_word(any.name + any.separator + "#"),
                              is_run(files) ? "" : " --allow-gaps");
     }
   }
@@ -355,8 +366,7 @@ const FrameFile* Sequence::find(std::uint64_t frame) const noexcept {
 }
 
 std::string Sequence::file_name(std::uint64_t frame) const {
-  return frame_file_name(name, digits, static_cast<std::int64_t>(frame) + base, extension,
-                         separator, counts_sign);
+  return frame_file_name(name, digits, frame, extension, separator, base, counts_sign);
 }
 
 std::vector<Sequence> group_sequences(const std::vector<std::string>& paths,
@@ -422,15 +432,16 @@ std::vector<Sequence> group_sequences(const std::vector<std::string>& paths,
   return sequences;
 }
 
-std::string frame_file_name(const std::string& name, unsigned digits, std::int64_t number,
+std::string frame_file_name(const std::string& name, unsigned digits, std::uint64_t frame,
                             const std::string& extension, const std::string& separator,
-                            bool counts_sign) {
+                            std::int64_t base, bool counts_sign) {
   std::string file = name;
   if (digits > 0) {
-    const auto magnitude =
-        number < 0 ? 0 - static_cast<std::uint64_t>(number) : static_cast<std::uint64_t>(number);
-    const unsigned width = digits - (number < 0 && counts_sign ? 1 : 0);
-    file += fmt::format("{}{}{:0{}}", separator, number < 0 ? "-" : "", magnitude, width);
+    const std::uint64_t below = 0 - static_cast<std::uint64_t>(base);
+    const bool negative = frame < below;
+    file += fmt::format("{}{}{:0{}}", separator, negative ? "-" : "",
+                        negative ? below - frame : frame - below,
+                        digits - (negative && counts_sign ? 1 : 0));
   }
   if (!extension.empty()) file += "." + extension;
   return file;

@@ -51,10 +51,11 @@ struct NumberOptions {
 [[nodiscard]] std::vector<Sequence> group_sequences(const std::vector<std::string>& paths,
                                                     const NumberOptions& options = {},
                                                     std::vector<std::string>* remarks = nullptr);
-/// "color.0003.exr"; "color.exr" for digits 0.
+/// "color.0003.exr" of frame 3, "color.exr" for digits 0. The number is `base`, not above 0, and
+/// the frame; `counts_sign` as in Sequence.
 [[nodiscard]] std::string frame_file_name(const std::string& name, unsigned digits,
-                                          std::int64_t number, const std::string& extension,
-                                          const std::string& separator = ".",
+                                          std::uint64_t frame, const std::string& extension,
+                                          const std::string& separator = ".", std::int64_t base = 0,
                                           bool counts_sign = false);
 /// "dumps/color" of "dumps/color.0003.exr".
 [[nodiscard]] std::string texture_path(const std::string& path);

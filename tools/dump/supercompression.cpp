@@ -52,6 +52,14 @@ std::vector<std::byte> pack_level(Scheme scheme, std::span<const std::byte> leve
 
 std::vector<std::byte> unpack_level(Scheme scheme, std::span<const std::byte> packed,
                                     std::size_t bytes, const std::string& path) {
+  if (scheme == Scheme::zstandard) {
+    // Before anything is allocated.
+    const auto said = ZSTD_getFrameContentSize(packed.data(), packed.size());
+    if (said != ZSTD_CONTENTSIZE_UNKNOWN && said != ZSTD_CONTENTSIZE_ERROR && said != bytes) {
+      fail(Exit::bad_input, "{}: a level is damaged: it unpacks to {} bytes, not {}; {}", path,
+           said, bytes, to_cure(Cure::get_again));
+    }
+  }
   std::vector<std::byte> level(bytes);
   std::size_t got = 0;
   std::string_view why;

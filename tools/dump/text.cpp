@@ -108,6 +108,14 @@ void flush_text(std::FILE* stream) {
 
 int output_error() noexcept { return first_output_error; }
 
+std::string shell_word(const std::string& word) {
+  const bool plain = word.find_first_of(" \t\n'\"\\$&;|<>()*?[]#~`!") == std::string::npos;
+  if (plain && !word.empty()) return word;
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? "'\\''" : std::string(1, c);
+  return text + "'";
+}
+
 std::string lower_case(std::string text) {
   for (char& c : text) {
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');

@@ -24,6 +24,9 @@ namespace gicodec::tools {
 /// Escapes characters of JSON's strings that printable() would escape, as \uHHHH.
 [[nodiscard]] std::string printable_json(std::string_view json);
 
+/// A word of a command line, quoted where a shell would read it otherwise.
+[[nodiscard]] std::string shell_word(const std::string& word);
+
 /// Text with ASCII letters in lower case.
 [[nodiscard]] std::string lower_case(std::string text);
 

@@ -80,7 +80,7 @@ void check_bytes(const TextureFile& file, const TextureHead& head, Format format
     fail(Exit::bad_input,
          "{}: has {} bytes behind the texels that its head describes, which would be lost; {}",
          file.path(), file.size() - head.offset - wanted,
-         to_cure(Cure::cut_rest, head.offset + wanted, file.path()));
+         to_cure(Cure::cut_rest, head.offset + wanted, shell_word(file.path())));
   }
   if (head.bytes != wanted || file.size() - head.offset > wanted) {
     fail(Exit::bad_input, "{}: has {} bytes from its first texel on, but {} make its {}; {}",

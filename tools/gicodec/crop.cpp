@@ -99,9 +99,9 @@ Dump crop_dump(const Dump& from, const Grid& origin, const Grid& size, const std
 
 /// The same file name, with the extension of EXR for images that are only read.
 std::string output_path(const CropOptions& options, const Sequence& sequence, std::uint64_t frame) {
-  const auto name = frame_file_name(
-      sequence.name, sequence.digits, static_cast<std::int64_t>(frame) + sequence.base,
-      written_extension(sequence), sequence.separator, sequence.counts_sign);
+  const auto name =
+      frame_file_name(sequence.name, sequence.digits, frame, written_extension(sequence),
+                      sequence.separator, sequence.base, sequence.counts_sign);
   return (std::filesystem::path(options.output) / name).string();
 }
 

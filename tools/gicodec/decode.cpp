@@ -132,7 +132,7 @@ bool is_any_anew(const ContainerInput& input) {
 Exit decode(const DecodeOptions& options, const Cli& cli) {
   const FrameRange range = frame_range_from_string(options.frames);
   ContainerInput input(options.input, options.decoder);
-  input.read_metadata();
+  input.read_metadata(options.allow_incomplete);
   if (!options.files.empty()) input.set_files(*image_kind("x." + options.files));
   if (options.plain) input.drop_attribute(kKtx2Scheme);
   select_dumps(input, options.volume);

@@ -99,7 +99,6 @@ Exit info(const InfoOptions& options, const Cli& cli) {
   LookBudget budget;
   std::size_t frames = 0;
   try {
-    input.read_metadata();
     Progress progress("reading frame", 0, cli);
     while (input.skip_frame()) {
       progress.step();
@@ -112,6 +111,14 @@ Exit info(const InfoOptions& options, const Cli& cli) {
     if (error.code() != Exit::bad_input) throw;
     report.damage = error.what();
   }
+  // Behind the packets, which are listed whether or not it is sound.
+  std::string damaged_metadata;
+  try {
+    if (report.damage.empty()) input.read_metadata(options.allow_incomplete);
+  } catch (const Error& error) {
+    if (error.code() != Exit::bad_input) throw;
+    damaged_metadata = error.what();
+  }
   report.totals = totals_of(input, report.textures, frames, !report.damage.empty());
   if (options.format == "json") {
     print_json(to_json(report));
@@ -120,6 +127,10 @@ Exit info(const InfoOptions& options, const Cli& cli) {
   }
   if (!report.damage.empty()) {
     remark(fmt::format("{}; {}", report.damage, recovery(input)));
+    return Exit::bad_input;
+  }
+  if (!damaged_metadata.empty()) {
+    remark(damaged_metadata);
     return Exit::bad_input;
   }
   return report_cut_off(input, recovery(input), options.allow_incomplete);

@@ -14,18 +14,9 @@
 namespace gicodec::tools {
 namespace {
 
-/// A word of a command line, quoted where a shell would split it.
-std::string quoted(const std::string& word) {
-  const bool plain = word.find_first_of(" \t\n'\"\\$&;|<>()*?[]#~`!") == std::string::npos;
-  if (plain && !word.empty()) return word;
-  std::string text = "'";
-  for (const char c : word) text += c == '\'' ? "'\\''" : std::string(1, c);
-  return text + "'";
-}
-
 std::string command_for(const std::string& path) {
   const std::string stem = std::filesystem::path(path).stem().string();
-  return fmt::format("gicodec encode -o {} {}", quoted(stem + ".gic"), quoted(path));
+  return fmt::format("gicodec encode -o {} {}", shell_word(stem + ".gic"), shell_word(path));
 }
 
 /// "8x8x1 blocks", or the grid of probes.
