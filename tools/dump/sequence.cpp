@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <set>
@@ -222,16 +223,18 @@ void settle_numbers(std::vector<Input>& inputs, const NumberOptions& options,
 /// What of a directory is not read.
 struct LeftOut {
   std::size_t count = 0;
-  std::string names;  ///< of the first few
+  std::set<std::string> names;  ///< the first few
 
   void add(const std::string& name) {
     constexpr std::size_t kNamed = 4;
-    if (count++ < kNamed) names += (names.empty() ? "" : ", ") + name;
+    ++count;
+    names.insert(name);
+    if (names.size() > kNamed) names.erase(std::prev(names.end()));
   }
-  /// "and 3 more".
+  /// "a.txt, b.txt and 3 more".
   [[nodiscard]] std::string text() const {
-    const auto named = static_cast<std::size_t>(std::ranges::count(names, ',')) + 1;
-    return count > named ? fmt::format("{} and {} more", names, count - named) : names;
+    const std::string list = listed(names, [](const std::string& name) { return name; });
+    return count > names.size() ? fmt::format("{} and {} more", list, count - names.size()) : list;
   }
 };
 
