@@ -15,6 +15,7 @@ python3 "$(dirname "${BASH_SOURCE[0]}")/../../tools/train/make_room.py" 2 "$room
 small="--gltf $room --grid 6x3x6 --rays 16 --trace-threads 1 --threads 1"
 view="--camera 6,2,6,0,2,0"  # without a scene: starts at once
 scene="--gltf $room --size 48x27"
+slower=${GICODEC_SLOWER:-1}  # how much longer programs are given, as under ThreadSanitizer
 mkfifo never && exec {never}<>never
 
 stop_all() {

@@ -323,7 +323,7 @@ lights() {
 # Two volumes, one of which scrolls with the camera.
 scrolls() {
   local delivery=$1 server volume
-  server fine-$delivery --fine 5x4x5 --fine-spacing 2 --lockstep --rate 6 --updates 24 --wait 1 --proofs
+  server fine-$delivery --fine 5x4x5 --fine-spacing 2 --lockstep --rate $((6 / slower)) --updates 24 --wait 1 --proofs
   server=$last
   client scrolls-$delivery fine-$delivery.gic $scene --orbit --delivery $delivery --updates 24 --expect-proofs
   ends 0 $last scrolls-$delivery
