@@ -13,7 +13,6 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <numeric>
 #include <utility>
 
 namespace gicodec::tools {
@@ -353,59 +352,6 @@ std::string recovery(const ContainerInput& input) {
   }
   return fmt::format("\"gicodec decode {}{} -o DIR\" gives back what comes before",
                      shell_word(input.argument()), flags);
-}
-
-void require_distinct_files(const ContainerInput& input) {
-  const ContainerDescription& description = input.description();
-  std::vector<std::size_t> taken;
-  for (std::size_t i = 0; i < input.textures().size(); ++i) {
-    const StoredTexture& texture = input.textures()[i];
-    if (!input.is_selected(i) || !texture.no_dump.empty()) continue;
-    const auto other = std::ranges::find_if(
-        taken, [&](std::size_t before) { return names_meet(input.textures()[before], texture); });
-    if (other == taken.end()) {
-      taken.push_back(i);
-      continue;
-    }
-    const std::size_t own = description.textures[i].volume;
-    const bool volumes = own != description.textures[*other].volume;
-    fail(Exit::bad_input, "{}: textures {} and {} have files of the same names{}", input.path(),
-         input.textures()[*other].name, texture.name,
-         volumes
-             ? fmt::format("; {}{}",
-                           to_cure(Cure::one_volume, shell_word(volume_choice(description, own))),
-                           volume_choice(description, own) == volume_name(description, own)
-                               ? ""
-                               : ", by its number, since others have its name")
-             : "");
-  }
-}
-
-void select_volume(ContainerInput& input, const std::string& volume) {
-  if (volume.empty()) return;
-  const std::size_t one = find_volume(input.description(), volume, input.path());
-  const VolumeEntry& entry = input.description().volumes[one];
-  std::vector<std::size_t> own(entry.textures);
-  std::iota(own.begin(), own.end(), std::size_t{entry.first_texture});
-  input.select(own);
-}
-
-void select_dumps(ContainerInput& input, const std::string& volume) {
-  select_volume(input, volume);
-  std::string other_volume, why_not;
-  for (std::size_t i = 0; i < input.textures().size(); ++i) {
-    const StoredTexture& texture = input.textures()[i];
-    if (!input.is_selected(i)) continue;
-    if (!texture.no_dump.empty() && why_not.empty()) why_not = texture.no_dump;
-    const std::size_t own = input.description().textures[i].volume;
-    if (!has_dumps(input, own) || !other_volume.empty()) continue;
-    other_volume = volume_choice(input.description(), own);
-  }
-  if (!why_not.empty()) {
-    fail(Exit::bad_input, "{}: {}{}", input.path(), why_not,
-         other_volume.empty() ? "" : "; " + to_cure(Cure::other_volume, shell_word(other_volume)));
-  }
-  require_distinct_files(input);
 }
 
 }  // namespace gicodec::tools
