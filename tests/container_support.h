@@ -105,6 +105,12 @@ struct Sample {
   std::vector<std::uint64_t> parts;        ///< where each index part begins
   std::uint64_t end_offset = 0;            ///< of the end entry
   std::map<std::uint64_t, States> frames;  ///< after the last packet of a frame
+
+  /// The packets that a file of so many bytes has whole.
+  [[nodiscard]] std::span<const ContainerPacket> packets_before(std::size_t size) const {
+    const auto whole = std::upper_bound(ends.begin(), ends.end(), size) - ends.begin();
+    return std::span(packets).first(static_cast<std::size_t>(whole));
+  }
 };
 
 /// A texture of a volume of kind probes, and what a container says of it.

@@ -74,21 +74,20 @@ TEST(Container, EveryPrefixGivesThePacketsBeforeTheCut) {
   const auto sample = make_sample(3);
   for (std::size_t size = 0; size < sample.bytes.size(); ++size) {
     const Exact cut{std::span(sample.bytes).first(size)};
-    const auto whole = static_cast<std::size_t>(
-        std::upper_bound(sample.ends.begin(), sample.ends.end(), size) - sample.ends.begin());
+    const auto whole = sample.packets_before(size);
     MemorySource memory(cut.span());
     PipeSource pipe(cut.span());
     for (Source* source : {static_cast<Source*>(&memory), static_cast<Source*>(&pipe)}) {
       auto reader = ContainerReader::open(*source);
       if (!reader) {
         ASSERT_EQ(reader.status(), Status::truncated) << size;
-        ASSERT_EQ(whole, 0U);
+        ASSERT_TRUE(whole.empty());
         continue;
       }
       ASSERT_FALSE(reader->finished());
       std::vector<ContainerPacket> packets;
       ASSERT_EQ(read_all(*reader, packets), Status::truncated) << size;
-      ASSERT_TRUE(same_packets(packets, std::span(sample.packets).first(whole))) << size;
+      ASSERT_TRUE(same_packets(packets, whole)) << size;
       // Whoever can go back looks again; of a pipe nothing follows.
       ContainerPacket more;
       ASSERT_EQ(reader->next(more), source == &memory ? Status::truncated : Status::end);

@@ -41,7 +41,6 @@ struct ContainerWriter::State {
   std::vector<SeekEntry> unlisted;   ///< packets since that part
   int last_metadata = -1;            ///< the last texture with a metadata entry
   std::uint64_t metadata_bytes = 0;  ///< of all metadata entries, unpacked
-  bool has_packets = false;
   std::uint64_t last_frame = 0;
   std::set<std::uint64_t> in_frame;  ///< keys of the packets of `last_frame`
   bool ended = false;
@@ -138,7 +137,6 @@ Status ContainerWriter::State::add(std::uint64_t frame, std::span<const std::byt
     in_frame.swap(keys);
   }
   last_frame = frame;
-  has_packets = true;
   return Status::ok;
 }
 
@@ -146,7 +144,7 @@ Status ContainerWriter::add_metadata(std::uint8_t texture_id, const Metadata& me
   return guarded([&]() -> Status {
     State& state = *state_;
     if (texture_id >= state.rules.size()) return Status::unknown_texture;
-    if (state.ended || state.has_packets || texture_id <= state.last_metadata) {
+    if (state.ended || !state.in_frame.empty() || texture_id <= state.last_metadata) {
       return Status::out_of_order;
     }
     if (metadata.empty()) return Status::ok;

@@ -4,7 +4,6 @@
 #include "dump/cure.h"
 #include "dump/error.h"
 #include "file_forms.h"
-#include "file_names.h"
 #include "volume_words.h"
 
 #include <gicodec/probes.h>
@@ -86,10 +85,11 @@ void ContainerInput::read_metadata(bool allow_damaged) {
     const Status status = beside.status();
     if (status == Status::truncated) return;  // No packet can follow.
     const std::string where = fmt::format("{}: metadata of texture {}", path_, textures_[i].name);
-    if (exit_code(status) == Exit::bad_input && !allow_damaged) {
+    const bool damaged = exit_code(status) == Exit::bad_input;
+    if (damaged && !allow_damaged) {
       fail(Exit::bad_input, "{}: {}; {}", where, to_string(status), to_cure(Cure::incomplete));
     }
-    if (exit_code(status) == Exit::bad_input) {
+    if (damaged) {
       remark(fmt::format("{}: {}; its files lack it", where, to_string(status)));
       continue;
     }

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <span>
 
 namespace gicodec::tools {
 

@@ -26,7 +26,7 @@ constexpr std::int64_t kMaxHeaderBytes = 64 << 20;
 constexpr std::size_t kMaxParts = 256;
 constexpr std::size_t kMaxName = 255;
 /// No lossless compression makes an image smaller by more; DWA does, which loses bits.
-constexpr std::uint64_t kRatio = 2000, kDwaRatio = 100000;
+constexpr std::uint64_t kDwaRatio = 100000;
 
 /// Bytes of a type's value. OpenEXR reads as many whatever the header's size is, and goes on from
 /// there. If the two differ, it would read another header than the one checked here.
@@ -99,7 +99,7 @@ class HeaderWalk {
       }
     }
     if (parts.empty()) fail(Exit::bad_input, "{}: its EXR header is empty", path_);
-    check_image_bytes(bytes_, dwa_ ? kDwaRatio : kRatio, path_);
+    check_image_bytes(bytes_, dwa_ ? kDwaRatio : kMaxRatio, path_);
     return parts;
   }
 

@@ -20,9 +20,6 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMaxDigits = 18;
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-bool is_separator(char c) { return c == '.' || c == '_' || c == '-'; }
-
 }  // namespace
 
 ParsedName parse_name(const std::string& file) {

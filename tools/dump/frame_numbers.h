@@ -10,6 +10,10 @@
 
 namespace gicodec::tools {
 
+constexpr bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
+/// Between a name and its number.
+constexpr bool is_separator(char c) noexcept { return c == '.' || c == '_' || c == '-'; }
+
 /// A file's name, split before the number at its end.
 struct ParsedName {
   std::string name;

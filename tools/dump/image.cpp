@@ -124,9 +124,6 @@ struct DpxSizes {
 
 constexpr std::uint32_t kUndefined = UINT32_MAX;
 
-/// No lossless compression makes an image smaller by more.
-constexpr std::uint64_t kRatio = 2000;
-
 /// Hint for a file that its extension's parser refuses.
 constexpr const char* kRename =
     "files are read as what they are called, so if it is of another kind, rename it";
@@ -182,7 +179,7 @@ std::vector<Dump> read_image(const std::string& path, ImageKind kind, const Hint
   const ImageHead& head = image->head;
   require_plain(head, kind, path);
   if (dpx) require_complete_dpx(head, *dpx, path);
-  check_image_bytes(head.bytes, kRatio, path);
+  check_image_bytes(head.bytes, kMaxRatio, path);
   const Stored stored = stored_type(head, path);
 
   Dump dump;

@@ -52,6 +52,8 @@ std::vector<FoundChannel> resolve(DumpInfo& info, const FoundImage& found, const
                               std::uint32_t sample, std::uint32_t x, std::uint32_t y,
                               const std::string& path);
 
+/// No compression that keeps bits makes an image smaller by more, but for zstd.
+inline constexpr std::uint64_t kMaxRatio = 2000;
 /// Throws for an image beyond 64 MiB that is more than `ratio` times as large as its file, which no
 /// compression reaches: the header's sizes determine allocations.
 void check_image_bytes(std::uint64_t bytes, std::uint64_t ratio, const std::string& path);

@@ -8,7 +8,6 @@
 #include "dump/text.h"
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -134,8 +133,7 @@ std::vector<Sequence> group_sequences(const std::vector<std::string>& paths,
     const unsigned digits = parsed.digits();
     const auto [place, is_new] = places.emplace(parsed.name, sequences.size());
     if (is_new) {
-      sequences.push_back(
-          {parsed.name, digits, parsed.extension, parsed.separator, base, false, {}});
+      sequences.push_back({parsed.name, 0, parsed.extension, parsed.separator, base, false, {}});
       files.emplace_back();
     }
     files[place->second].push_back(&input);
@@ -181,7 +179,7 @@ std::string texture_path(const std::string& path) {
 }
 
 bool is_separator(const std::string& text) noexcept {
-  return text.empty() || text == "." || text == "_" || text == "-";
+  return text.empty() || (text.size() == 1 && is_separator(text[0]));
 }
 
 std::string question_of(const std::vector<Sequence>& sequences) {
@@ -191,9 +189,8 @@ std::string question_of(const std::vector<Sequence>& sequences) {
     if (sequence.frames.size() > 1) continue;
     std::string pattern;
     for (const char c : sequence.name) {
-      if (std::isdigit(static_cast<unsigned char>(c)) == 0) pattern += c;
-      if (std::isdigit(static_cast<unsigned char>(c)) != 0 && !pattern.ends_with('#'))
-        pattern += '#';
+      if (!is_digit(c)) pattern += c;
+      if (is_digit(c) && !pattern.ends_with('#')) pattern += '#';
     }
     alike[pattern].push_back(&sequence);
   }

@@ -66,14 +66,14 @@ NumberOptions with_gaps(NumberOptions numbers) {
 
 /// Pairs files of the same name, and else of the same texture and frame, because folders may hold
 /// files of different kinds.
-std::vector<Pair> pairs_of_folders(const std::string& left, const std::string& right,
-                                   const NumberOptions& numbers) {
+std::vector<Pair> pairs_of_folders(const std::string& left, const std::vector<Sequence>& lefts,
+                                   const std::string& right, const std::vector<Sequence>& rights) {
   using Key = std::pair<std::string, std::uint64_t>;
   std::map<Key, Pair> pairs;
   std::set<std::string> both;
   const auto name_of = [](const std::string& path) { return fs::path(path).filename().string(); };
   for (const auto& [own, other] : {std::pair(left, right), std::pair(right, left)}) {
-    for (const Sequence& sequence : group_sequences({own}, with_gaps(numbers))) {
+    for (const Sequence& sequence : own == left ? lefts : rights) {
       for (const FrameFile& file : sequence.frames) {
         const std::string name = name_of(file.path), there = (fs::path(other) / name).string();
         const bool same = fs::exists(there);
@@ -94,7 +94,8 @@ std::vector<Pair> pairs_of_folders(const std::string& left, const std::string& r
   return all;
 }
 
-std::vector<Pair> pairs_of(const CompareOptions& options) {
+/// True if both sides are folders; throws unless both or neither are.
+bool are_folders(const CompareOptions& options) {
   for (const std::string& path : {options.left, options.right}) {
     require_exists(path);
     if (!fs::is_directory(path)) (void)require_image_kind(path);
@@ -103,8 +104,7 @@ std::vector<Pair> pairs_of(const CompareOptions& options) {
   if (left_directory != fs::is_directory(options.right)) {
     fail(Exit::usage, "compare needs two files or two directories");
   }
-  if (!left_directory) return {{options.left, options.right}};
-  return pairs_of_folders(options.left, options.right, options.geometry.numbers);
+  return left_directory;
 }
 
 Compared compare_images(const Pair& pair, const Dump& left, const Dump& right, bool headers) {
@@ -178,10 +178,13 @@ void print_text(const Compared& compared) {
 Exit compare(const CompareOptions& options, const Cli& cli) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   bool same = true;
-  const auto pairs = pairs_of(options);
-  std::vector<Sequence> all = group_sequences({options.left}, with_gaps(options.geometry.numbers));
-  const auto others = group_sequences({options.right}, with_gaps(options.geometry.numbers));
-  all.insert(all.end(), others.begin(), others.end());
+  const bool folders = are_folders(options);
+  const auto left = group_sequences({options.left}, with_gaps(options.geometry.numbers));
+  const auto right = group_sequences({options.right}, with_gaps(options.geometry.numbers));
+  const auto pairs = folders ? pairs_of_folders(options.left, left, options.right, right)
+                             : std::vector<Pair>{{options.left, options.right}};
+  std::vector<Sequence> all = left;
+  all.insert(all.end(), right.begin(), right.end());
   check_names(options.geometry, all);
   Progress progress("comparing", pairs.size(), cli);
   for (const Pair& pair : pairs) {
