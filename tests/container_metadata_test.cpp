@@ -227,6 +227,11 @@ TEST(HostileMetadata, Limits) {
   EXPECT_EQ(with(2 * zeros.size() - 1), Status::limit_exceeded);
   EXPECT_EQ(with(zeros.size() - 1), Status::limit_exceeded);
   EXPECT_EQ(with(10), Status::limit_exceeded);
+  Bytes endless;
+  ByteWriter head(endless);
+  head.fixed(std::uint8_t{5});
+  head.varint(std::uint64_t{1} << 40);
+  EXPECT_EQ(status_of(file_of(endless), 0), Status::limit_exceeded);
   Bytes many;
   ByteWriter writer(many);
   writer.varint(kMaxPackedEntries + 1);

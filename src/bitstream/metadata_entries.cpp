@@ -15,6 +15,9 @@ Status MetadataEntries::find(EntryReader& reader) {
       if (pipe) ahead_ = {entry, status};
       return status == Status::io_failed ? status : Status::ok;
     }
+    // Refused before it is complete, as other entries are.
+    const bool too_large = entry.size > reader.limits().max_metadata_bytes;
+    if (status == Status::truncated && too_large) return Status::limit_exceeded;
     const bool whole = status == Status::ok || status == Status::checksum_mismatch;
     if (whole) status = add(reader, entry, status);
     if (status != Status::ok) return status;

@@ -69,6 +69,18 @@ TEST_F(CliSafety, DecodeReplacesOnlyWhenTold) {
   program_.succeed({"compare", "in", "out"});
 }
 
+TEST_F(CliSafety, DecodeKeepsWhatIsNoFile) {
+  program_.succeed({"encode", "-o", "y.gic", dumps_[0]});
+  const std::string file = fs::path(dumps_[0]).filename(), path = "out/" + file;
+  fs::create_directories(program_.path("out"));
+  fs::create_symlink("nowhere", program_.path(path));
+  expect_refused(Exit::io, {"decode", "y.gic", "-o", "out"}, {file, "--overwrite"});
+  EXPECT_TRUE(fs::is_symlink(program_.path(path)));
+  fs::remove(program_.path(path));
+  ASSERT_EQ(mkfifo(program_.path(path).c_str(), 0600), 0);
+  expect_refused(Exit::io, {"decode", "y.gic", "-o", "out"}, {"in the way", "no regular file"});
+}
+
 TEST_F(CliSafety, DecodeKeepsTheContainer) {
   fs::create_directories(program_.path("out"));
   fs::create_hard_link(program_.path("x.gic"), program_.path("out/vis.0001.exr"));

@@ -79,6 +79,9 @@ TEST_F(CliWords, ValuesThatAreNoCodes) {
       {"c.png: holds 8 bits per channel", "10 of A2R10G10B10", "--vk-format R8G8B8A8_UNORM"});
   program_.succeed({"encode", "-o", "z.gic", "c.png"});
   EXPECT_NE(program_.succeed({"info", "z.gic"}).out.find("R8G8B8_UNORM"), std::string::npos);
+  // The EXR that stands for it is read as the same format.
+  program_.succeed({"decode", "z.gic", "-o", "z"});
+  program_.succeed({"compare", "c.png", "z/c.exr"});
   program_.succeed(
       {"encode", "-o", "y.gic", "--grid", "4x2x3", "--vk-format", "R8G8B8A8_UNORM", "c.png"});
   program_.expect_failure(

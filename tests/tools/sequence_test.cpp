@@ -32,7 +32,7 @@ TEST(Sequence, GroupsByName) {
       group_sequences({"a/color.0001.exr", "a/vis.0002.exr", "b/color.0002.exr", "vis.0001.exr"});
   ASSERT_EQ(sequences.size(), 2U);
   EXPECT_EQ(sequences[0].name, "color");
-  EXPECT_EQ(sequences[0].digits, 4U);
+  EXPECT_EQ(sequences[0].names.digits, 4U);
   EXPECT_EQ(sequences[1].name, "vis");
   ASSERT_EQ(sequences[1].frames.size(), 2U);
   EXPECT_EQ(sequences[1].frames[0].frame, 1U);
@@ -58,9 +58,9 @@ TEST(Sequence, OtherSeparators) {
         group_sequences({name("color", 7), name("color", 8), name("vis", 7), name("vis", 8)});
     ASSERT_EQ(sequences.size(), 2U) << separator;
     EXPECT_EQ(sequences[0].name, "color");
-    EXPECT_EQ(sequences[0].separator, separator);
-    EXPECT_EQ(sequences[0].digits, 4U);
-    EXPECT_EQ(frame_file_name("vis", 4, 8, "exr", sequences[1].separator), name("vis", 8));
+    EXPECT_EQ(sequences[0].names.separator, separator);
+    EXPECT_EQ(sequences[0].names.digits, 4U);
+    EXPECT_EQ(sequences[1].file_name(8), name("vis", 8));
     EXPECT_NE(message_of({name("color", 7), name("color", 9)}).find(name("color", 8)),
               std::string::npos);
   }
@@ -100,7 +100,7 @@ TEST(Sequence, QuestionsNumbersThatAreNotLast) {
 
 TEST(Sequence, NumbersMayGrowBeyondTheirDigits) {
   const auto sequences = group_sequences({"c.9.exr", "c.10.exr", "c.11.exr"});
-  EXPECT_EQ(sequences[0].digits, 1U);
+  EXPECT_EQ(sequences[0].names.digits, 1U);
   EXPECT_NE(message_of({"c.09.exr", "c.10.exr", "c.011.exr"}).find("differ in width"),
             std::string::npos);
 }
@@ -126,7 +126,7 @@ TEST(Sequence, NegativeFrames) {
       {"foo.-003.exr", "foo.-002.exr", "foo.-001.exr", "foo.000.exr", "foo.001.exr"});
   ASSERT_EQ(sequences.size(), 1U);
   EXPECT_EQ(sequences[0].name, "foo");
-  EXPECT_EQ(sequences[0].base, -3);
+  EXPECT_EQ(sequences[0].names.base, -3);
   EXPECT_EQ(sequences[0].frames[0].frame, 0U);
   EXPECT_EQ(sequences[0].frames[4].frame, 4U);
   EXPECT_EQ(name_of_first(sequences[0]), "foo.-003.exr");
@@ -134,15 +134,16 @@ TEST(Sequence, NegativeFrames) {
   // As printf() pads them.
   const auto padded =
       group_sequences({"foo.-010.exr", "foo.-009.exr", "foo.0000.exr"}, {.allow_gaps = true});
-  EXPECT_TRUE(padded[0].counts_sign);
+  EXPECT_TRUE(padded[0].names.counts_sign);
   for (const FrameFile& file : padded[0].frames) {
     EXPECT_EQ(padded[0].file_name(file.frame), file.path);
   }
   EXPECT_NE(message_of({"foo.-01.exr", "foo.0000.exr"}, true).find("name it"), std::string::npos);
-  EXPECT_EQ(frame_file_name("foo", 4, ~std::uint64_t{0}, "exr"), "foo.18446744073709551615.exr");
-  EXPECT_EQ(frame_file_name("foo", 4, 0, "exr", "_", -12), "foo_-0012.exr");
+  EXPECT_EQ((FileNames{.digits = 4, .extension = "exr"}.of("foo", ~std::uint64_t{0})),
+            "foo.18446744073709551615.exr");
+  EXPECT_EQ((FileNames{4, "exr", "_", -12}.of("foo", 0)), "foo_-0012.exr");
   // Behind no other separator it is one.
-  EXPECT_EQ(group_sequences({"foo-003.exr"})[0].base, 0);
+  EXPECT_EQ(group_sequences({"foo-003.exr"})[0].names.base, 0);
   EXPECT_EQ(group_sequences({"-003.exr"})[0].name, "-003");
 }
 
@@ -151,7 +152,7 @@ TEST(Sequence, NumbersThatAreNoFrames) {
   const auto names = [](const std::vector<std::string>& paths, const NumberOptions& options = {}) {
     Names found;
     for (const Sequence& sequence : group_sequences(paths, options)) {
-      found.push_back(sequence.name + (sequence.digits > 0 ? "#" : ""));
+      found.push_back(sequence.name + (sequence.names.digits > 0 ? "#" : ""));
     }
     return found;
   };
@@ -216,7 +217,7 @@ TEST(Sequence, PatternsOfManyStars) {
   const std::string name = std::string(240, 'a') + "1.exr";
   std::string pattern;
   for (int i = 0; i < 100; ++i) pattern += "*a";
-  EXPECT_EQ(group_sequences({name}, {.pattern = pattern + "*#"})[0].digits, 1U);
+  EXPECT_EQ(group_sequences({name}, {.pattern = pattern + "*#"})[0].names.digits, 1U);
   EXPECT_THROW((void)group_sequences({name}, {.pattern = pattern + "*b#"}), Error);
 }
 

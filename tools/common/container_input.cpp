@@ -67,7 +67,6 @@ ContainerInput::ContainerInput(const std::string& path, const DecoderFlags& deco
     texture.no_dump = std::move(why_not);
   }
   selected_.assign(textures_.size(), true);
-  beside_.resize(textures_.size());
   prepare();
   if (source_->size() && !player_->finished()) find_missing();
 }
@@ -93,12 +92,18 @@ void ContainerInput::read_metadata(bool allow_damaged) {
       remark(fmt::format("{}: {}; its files lack it", where, to_string(status)));
       continue;
     }
-    beside_[i] = take(std::move(beside), where);
-    if (beside_[i].empty() || !textures_[i].no_dump.empty()) continue;
+    Metadata more = take(std::move(beside), where);
+    if (more.empty() || !textures_[i].no_dump.empty()) continue;
     TextureEntry entry = description().textures[i];
-    entry.metadata.insert(entry.metadata.end(), beside_[i].begin(), beside_[i].end());
+    entry.metadata.insert(entry.metadata.end(), std::make_move_iterator(more.begin()),
+                          std::make_move_iterator(more.end()));
     textures_[i] = stored(entry);
   }
+}
+
+Metadata ContainerInput::beside(std::size_t texture) {
+  auto metadata = player_->metadata(static_cast<std::uint8_t>(texture));
+  return metadata ? *std::move(metadata) : Metadata{};
 }
 
 void ContainerInput::open() {

@@ -42,8 +42,9 @@ class ContainerInput {
   /// Call it before the functions below. Throws for damaged metadata unless `allow_damaged`, which
   /// leaves them out and says so.
   void read_metadata(bool allow_damaged = false);
-  /// After read_metadata(): a texture's.
-  [[nodiscard]] const Metadata& beside(std::size_t texture) const { return beside_[texture]; }
+  /// What read_metadata() read of a texture, read again, since it may be large; empty where it is
+  /// damaged.
+  [[nodiscard]] Metadata beside(std::size_t texture);
   /// Makes all textures decode to files of that kind (file_forms.h).
   void set_files(ImageKind kind);
   /// Makes no texture's files have an attribute.
@@ -133,8 +134,7 @@ class ContainerInput {
   std::unique_ptr<CountingSource> source_;
   std::optional<ContainerPlayer> player_;
   std::vector<StoredTexture> textures_;
-  std::vector<Metadata> beside_;  ///< by texture
-  std::vector<bool> selected_;    ///< by texture
+  std::vector<bool> selected_;  ///< by texture
   std::optional<std::uint64_t> first_frame_, last_frame_;
   std::optional<std::uint64_t> sought_;  ///< frame of seek()
   bool damaged_ = false;

@@ -21,7 +21,7 @@ constexpr std::array<Form, 4> kForms{{{ImageKind::exr, "exr"},
                                       {ImageKind::raw, "raw"}}};
 
 ImageKind kind_of(const StoredTexture& texture) {
-  return image_kind("x." + texture.extension).value_or(ImageKind::exr);
+  return image_kind("x." + texture.names.extension).value_or(ImageKind::exr);
 }
 
 /// True if files of that kind can hold the attribute. All kinds but DDS can hold text; other types
@@ -48,7 +48,7 @@ void set_files(StoredTexture& texture, ImageKind kind) {
     return one == ImageKind::dds || one == ImageKind::ktx2;
   };
   if (!has_levels(kind) || !has_levels(kind_of(texture))) own_file(texture);
-  texture.extension = std::ranges::find(kForms, kind, &Form::kind)->ending;
+  texture.names.extension = std::ranges::find(kForms, kind, &Form::kind)->ending;
   std::set<std::string> unsaid;
   const auto remove = [&](const Attribute& attribute) {
     if (is_head_field(attribute.name)) return true;
@@ -69,6 +69,16 @@ void set_files(StoredTexture& texture, ImageKind kind) {
   }
 }
 
+void require_attributes(const StoredTexture& texture, const std::string& path) {
+  if (kind_of(texture) != ImageKind::exr) return;
+  const std::string where = fmt::format("{}: texture {}", path, texture.name);
+  require_exr_attributes(texture.info.attributes, where);
+  for (const FrameAttribute& change : texture.changes) {
+    if (change.attribute.type.empty()) continue;
+    require_exr_attributes({change.attribute}, fmt::format("{}, frame {}", where, change.frame));
+  }
+}
+
 void require_format(const StoredTexture& texture, const std::string& path) {
   const Format format = texture.info.desc.record.format;
   const ImageKind kind = kind_of(texture);
@@ -81,7 +91,7 @@ void require_format(const StoredTexture& texture, const std::string& path) {
       others += (others.empty() ? "" : ", ") + std::string(form.ending);
   }
   fail(Exit::bad_input, "{}: texture {} is of format {}, which {} files cannot have; {}", path,
-       texture.name, find_format(format)->name, texture.extension,
+       texture.name, find_format(format)->name, texture.names.extension,
        to_cure(Cure::other_files, others));
 }
 

@@ -13,5 +13,7 @@ void set_files(StoredTexture& texture, ImageKind kind);
 
 /// Throws Error of Exit::bad_input, which names other kinds, if such files cannot hold the texture.
 void require_format(const StoredTexture& texture, const std::string& path);
+/// Throws Error of Exit::bad_input for an attribute that such files cannot have.
+void require_attributes(const StoredTexture& texture, const std::string& path);
 
 }  // namespace gicodec::tools

@@ -22,6 +22,7 @@ constexpr std::size_t kLongest = 255;   ///< bytes of a file's name
 constexpr std::size_t kNumber = 10;     ///< digits of a frame's number for which there is room
 constexpr std::size_t kHash = 18;       ///< bytes of %~ and the hash
 constexpr const char* kNothing = "%-";  ///< stands for an empty text
+constexpr std::string_view kSidecar = ".json";
 
 /// Bytes of the first character of `text`; 0 if a terminal does not show it as it is.
 std::size_t shown_size(std::string_view text) {
@@ -100,14 +101,15 @@ bool has_sidecar(const StoredTexture& texture, std::string_view where) {
 }
 
 std::vector<Names> names_of(const StoredTexture& texture) {
+  const auto& [digits, extension, separator, base, counts_sign] = texture.names;
   const std::string stem = file_stem(texture);
-  const std::string before = texture.digits == 0 ? stem : stem + texture.separator;
-  const std::string ending = texture.extension.empty() ? "" : "." + texture.extension;
-  std::vector<Names> names{{before, texture.digits, ending}};
+  const std::string before = digits == 0 ? stem : stem + separator;
+  const std::string ending = extension.empty() ? "" : "." + extension;
+  std::vector<Names> names{{before, digits, ending}};
   if (image_kind("x" + ending) != ImageKind::raw) return names;
-  if (has_sidecar(texture, "")) names.push_back({before, texture.digits, ".json"});
+  if (has_sidecar(texture, "")) names.push_back({before, digits, std::string(kSidecar)});
   if (has_sidecar(texture, "shared")) {
-    names.push_back({texture_path(texture.file_name(0)), 0, ".json"});
+    names.push_back({texture_path(texture.file_name(0)), 0, std::string(kSidecar)});
   }
   return names;
 }
@@ -148,10 +150,13 @@ std::string from_file_name(const std::string& part) {
 }
 
 std::string file_stem(const StoredTexture& texture) {
-  std::size_t rest = texture.extension.empty() ? 0 : 1 + texture.extension.size();
-  if (texture.digits > 0) {
-    const std::size_t digits = texture.digits;
-    rest += texture.separator.size() + (texture.made_of_files ? digits : std::max(digits, kNumber));
+  const auto& [digits, extension, separator, base, counts_sign] = texture.names;
+  std::size_t rest = extension.empty() ? 0 : 1 + extension.size();
+  const bool is_raw = image_kind("x." + extension) == ImageKind::raw;
+  if (is_raw && has_sidecar(texture, "")) rest = std::max(rest, kSidecar.size());
+  if (digits > 0) {
+    rest += separator.size() +
+            (texture.made_of_files ? digits : std::max<std::size_t>(digits, kNumber));
   }
   return as_file_name(texture.file, kLongest - rest);
 }

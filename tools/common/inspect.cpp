@@ -52,16 +52,18 @@ void note_lost(StoredTexture& texture, const DumpInfo& info, const std::string& 
   }
 }
 
+/// True for kinds of files that are only read.
+bool becomes_exr(const Sequence& sequence) {
+  return !is_written(require_image_kind(sequence.frames.front().path));
+}
+
 StoredTexture stored_image(const Sequence& sequence, DumpInfo info) {
   StoredTexture texture;
   texture.file = from_file_name(sequence.name);
   texture.name = texture.file + (info.image.empty() ? "" : ".") + info.image;
   texture.made_of_files = true;
-  texture.digits = sequence.digits;
-  texture.extension = written_extension(sequence);
-  texture.separator = sequence.separator;
-  texture.base = sequence.base;
-  texture.counts_sign = sequence.counts_sign;
+  texture.names = sequence.names;
+  texture.names.extension = written_extension(sequence);
   texture.info = std::move(info);
   if (const auto* lost = find_attribute(texture.info.attributes, kLossyAttribute)) {
     texture.lossy = lost->value;
@@ -80,7 +82,11 @@ std::vector<StoredTexture> inspect(const Sequence& sequence, Hints hints) {
   std::vector<StoredTexture> textures;
   std::vector<std::set<std::string>> lost;
   for (const FrameFile& file : sequence.frames) {
-    const auto infos = read_dump_infos(file.path, hints);
+    auto infos = read_dump_infos(file.path, hints);
+    if (becomes_exr(sequence)) {
+      // Such a file would else be read as what its channels look like.
+      for (DumpInfo& info : infos) describe(info.attributes, info.desc);
+    }
     if (&file == &first) {
       for (const DumpInfo& info : infos) textures.push_back(stored_image(sequence, info));
       lost.resize(textures.size());
@@ -103,7 +109,7 @@ std::vector<StoredTexture> inspect(const Sequence& sequence, Hints hints) {
 }
 
 std::string written_extension(const Sequence& sequence) {
-  return is_written(require_image_kind(sequence.frames.front().path)) ? sequence.extension : "exr";
+  return becomes_exr(sequence) ? "exr" : sequence.names.extension;
 }
 
 }  // namespace gicodec::tools

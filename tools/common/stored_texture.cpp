@@ -168,7 +168,7 @@ DumpInfo StoredTexture::decoded_info(std::uint64_t frame) const {
 }
 
 std::string StoredTexture::file_name(std::uint64_t frame) const {
-  return frame_file_name(file_stem(*this), digits, frame, extension, separator, base, counts_sign);
+  return names.of(file_stem(*this), frame);
 }
 
 std::string StoredTexture::lacks() const {
@@ -183,25 +183,24 @@ std::string StoredTexture::loss() const {
 }
 
 bool of_one_file(const StoredTexture& a, const StoredTexture& b) {
-  return a.made_of_files && b.made_of_files && a.file == b.file && a.extension == b.extension &&
-         a.separator == b.separator && a.digits == b.digits && a.counts_sign == b.counts_sign;
+  return a.made_of_files && b.made_of_files && a.file == b.file && a.names == b.names;
 }
 
 TextureEntry to_entry(const StoredTexture& texture) {
   TextureEntry entry{texture.name, texture.info.desc, 0, texture.largest_error, {}};
   Metadata& metadata = entry.metadata;
-  metadata.emplace_back("digits", fmt::format("{}", texture.digits));
+  metadata.emplace_back("digits", fmt::format("{}", texture.names.digits));
   if (texture.file != texture.name) metadata.emplace_back("file", texture.file);
   const ImagePlace& place = texture.info.place;
   if (place != ImagePlace{} || !texture.info.head) {
     metadata.emplace_back("image", fmt::format("{} {} {}{}", place.part, place.level, place.face,
                                                texture.info.head ? "" : " -"));
   }
-  metadata.emplace_back("extension", texture.extension);
-  if (texture.separator != ".") metadata.emplace_back("separator", texture.separator);
-  if (texture.base != 0) {
-    metadata.emplace_back("base",
-                          fmt::format("{}{}", texture.base, texture.counts_sign ? kSign : ""));
+  metadata.emplace_back("extension", texture.names.extension);
+  if (texture.names.separator != ".") metadata.emplace_back("separator", texture.names.separator);
+  if (texture.names.base != 0) {
+    metadata.emplace_back(
+        "base", fmt::format("{}{}", texture.names.base, texture.names.counts_sign ? kSign : ""));
   }
   const Record& record = texture.info.desc.record;
   const Layout& layout = texture.info.desc.layout;
@@ -277,17 +276,17 @@ StoredTexture from_entry(const TextureEntry& entry, const std::string& path) {
     if (key.starts_with("attribute:") || key.starts_with("attribute@")) {
       read_attribute(texture, attributes, key, value, where);
     } else if (key == "digits") {
-      read_number(value, texture.digits, key, where);
-      if (texture.digits > kMaxDigits) {
+      read_number(value, texture.names.digits, key, where);
+      if (texture.names.digits > kMaxDigits) {
         fail(Exit::bad_input, "{}: metadata digits is damaged", where);
       }
     } else if (key == "base") {
-      texture.counts_sign = value.ends_with(kSign);
+      texture.names.counts_sign = value.ends_with(kSign);
       const std::string_view text(value);
-      read_number(text.substr(0, text.size() - (texture.counts_sign ? kSign.size() : 0)),
-                  texture.base, key, where);
+      read_number(text.substr(0, text.size() - (texture.names.counts_sign ? kSign.size() : 0)),
+                  texture.names.base, key, where);
       constexpr std::int64_t kLeast = -1'000'000'000'000'000'000;
-      if (texture.base > 0 || texture.base < kLeast) {
+      if (texture.names.base > 0 || texture.names.base < kLeast) {
         fail(Exit::bad_input, "{}: metadata base is damaged", where);
       }
     } else if (key == "file") {
@@ -295,13 +294,14 @@ StoredTexture from_entry(const TextureEntry& entry, const std::string& path) {
     } else if (key == "image") {
       read_place(texture.info, value, where);
     } else if (key == "extension") {
-      if (value.size() > 16 || (!value.empty() && !is_file_name(value))) {
+      const bool is_kind = value.empty() || image_kind("x." + value);
+      if (!is_kind || value.find('.') != std::string::npos) {
         fail(Exit::bad_input, "{}: metadata extension is damaged", where);
       }
-      texture.extension = value;
+      texture.names.extension = value;
     } else if (key == "separator") {
       if (!is_separator(value)) fail(Exit::bad_input, "{}: metadata separator is damaged", where);
-      texture.separator = value;
+      texture.names.separator = value;
     } else if (key == "slots" || key == "padding") {
       read_layout(texture.info.desc, key, value, where);
     } else if (key.starts_with("channel:")) {

@@ -30,11 +30,7 @@ struct StoredTexture {
   std::string name;
   std::string
       file;  ///< its files' name; textures of one file are its images, info.place says which
-  unsigned digits = 4;
-  std::string extension = "exr";
-  std::string separator = ".";
-  std::int64_t base = 0;                ///< the number of frame 0's file; not above 0
-  bool counts_sign = false;             ///< Sequence::counts_sign
+  FileNames names = {.digits = 4, .extension = "exr"};
   DumpInfo info;                        ///< of the first frame
   std::vector<FrameAttribute> changes;  ///< ascending by frame
   std::optional<FrameTimes> times;      ///< gives gicodec:time of each frame

@@ -103,9 +103,16 @@ std::string record_text(const Record& record) {
 }
 
 std::string shape_text(const TextureDesc& desc) {
-  return fmt::format("{}, grid {}, {}+{} texels, {}", record_text(desc.record),
-                     to_string(desc.grid), desc.block.x, 2 * desc.guard_band,
+  const Extent size = extent(desc);
+  return fmt::format("{}, {}x{}{} in {}, {}", record_text(desc.record), size.width, size.height,
+                     size.slices == 1 ? "" : fmt::format("x{}", size.slices), blocks_text(desc),
                      gicodec::to_string(desc.layout.tiling));
+}
+
+std::string blocks_text(const TextureDesc& desc) {
+  if (!is_probes(desc)) return fmt::format("blocks of {}", block_text(desc.block));
+  return fmt::format("{} probes of {} texels and {} of guard band", to_string(desc.grid),
+                     block_text(desc.block), desc.guard_band);
 }
 
 std::string block_text(const BlockShape& block) {

@@ -30,7 +30,9 @@ namespace gicodec::tools {
 /// "R16G16_SFLOAT", or for a record that an application defines "16 bytes: a 32 sfloat, b 96
 /// opaque".
 [[nodiscard]] std::string record_text(const Record& record);
-/// "R16G16_SFLOAT, grid 4x2x3, 16+2 texels, atlas_xy_z".
+/// "4x2x3 probes of 8x8 texels and 1 of guard band", or "blocks of 8x8".
+[[nodiscard]] std::string blocks_text(const TextureDesc& desc);
+/// "R16G16_SFLOAT, 64x32 in blocks of 8x8, slices_xy_z".
 [[nodiscard]] std::string shape_text(const TextureDesc& desc);
 /// "8x8", or "6x1x2" for deeper blocks.
 [[nodiscard]] std::string block_text(const BlockShape& block);

@@ -312,4 +312,9 @@ void set_attributes(Imf::Header& header, const Attributes& attributes, const std
   }
 }
 
+void require_exr_attributes(const Attributes& attributes, const std::string& path) {
+  Imf::Header header;
+  set_attributes(header, attributes, path);
+}
+
 }  // namespace gicodec::tools

@@ -122,6 +122,7 @@ void check_texels(const DumpInfo& info, std::span<const std::byte> texels,
 }
 
 void write_dumps(const std::string& path, std::span<const Dump> images, Existing existing) {
+  require_place(path);
   const ImageKind kind = image_kind(path).value_or(ImageKind::exr);
   if (kind == ImageKind::exr || !is_written(kind)) {
     write_file(path, to_exr(images, path), existing);

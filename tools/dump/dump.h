@@ -168,6 +168,11 @@ enum class ImageKind : std::uint8_t { exr, png, tiff, dpx, dds, ktx2, raw };
 [[nodiscard]] bool has_format(ImageKind kind, Format format) noexcept;
 /// True if EXR files can hold an attribute: OpenEXR limits names and types.
 [[nodiscard]] bool exr_has_attribute(const Attribute& attribute);
+/// By the number in an EXR file's attribute "compression". The first five keep all bits.
+inline constexpr std::array<const char*, 10> kExrCompressions = {
+    "none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"};
+/// Throws Error of Exit::bad_input for an attribute with a value that none of its type has.
+void require_exr_attributes(const Attributes& attributes, const std::string& path);
 /// The kind of a file by its extension: EXR if it has none; nullopt if unknown.
 [[nodiscard]] std::optional<ImageKind> image_kind(const std::string& path);
 /// The same; throws if unknown.

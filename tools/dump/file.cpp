@@ -48,9 +48,12 @@ bool is_container(int descriptor) {
 /// True unless the output would replace a file that `existing` protects.
 bool may_go(const std::string& path, Existing existing) {
   struct stat file {};
-  if (existing == Existing::replace || stat(path.c_str(), &file) != 0 || !holds_something(file)) {
-    return true;
+  if (existing == Existing::replace) return true;
+  if (stat(path.c_str(), &file) != 0) {
+    // What a link without a file stands for is not known.
+    return lstat(path.c_str(), &file) != 0 || !S_ISLNK(file.st_mode);
   }
+  if (!holds_something(file)) return true;
   return existing == Existing::container && is_container_file(path);
 }
 
@@ -162,6 +165,12 @@ void check_output(const std::string& path, const InputFiles& inputs, Existing ex
          path);
   }
   if (!may_go(path, existing)) fail_existing(path, existing);
+}
+
+void require_place(const std::string& path) {
+  struct stat file {};
+  if (stat(path.c_str(), &file) != 0 || S_ISREG(file.st_mode)) return;
+  fail(Exit::io, "{}: is in the way and no regular file; move it or name another output", path);
 }
 
 bool is_container_file(const std::string& path) {

@@ -40,6 +40,8 @@ class InputFiles {
   std::set<std::pair<std::uint64_t, std::uint64_t>> files_;  ///< device, inode
 };
 
+/// Throws Error of Exit::io if what has that name is no regular file.
+void require_place(const std::string& path);
 /// Throws Error of Exit::io if there is no file, folder or device of that name.
 void require_exists(const std::string& path);
 

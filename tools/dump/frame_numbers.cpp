@@ -83,9 +83,10 @@ bool at_pattern(const ParsedName& parsed, const std::string& pattern) {
 const Sequence* known_of(const ParsedName& parsed, const std::vector<Sequence>& known) {
   const std::string stem = parsed.name + parsed.separator + parsed.number;
   for (const Sequence& one : known) {
-    if (one.extension != parsed.extension) continue;
-    if (one.digits == 0 && one.name == stem) return &one;
-    if (one.digits > 0 && one.name == parsed.name && one.separator == parsed.separator &&
+    const FileNames& names = one.names;
+    if (names.extension != parsed.extension) continue;
+    if (names.digits == 0 && one.name == stem) return &one;
+    if (names.digits > 0 && one.name == parsed.name && names.separator == parsed.separator &&
         !parsed.number.empty()) {
       return &one;
     }
@@ -167,7 +168,7 @@ void settle_numbers(std::vector<Input>& inputs, const NumberOptions& options,
     ParsedName& parsed = input.parsed;
     if (parsed.number.empty()) continue;
     if (const Sequence* known = known_of(parsed, options.known)) {
-      if (known->digits == 0) parsed.keep_number();
+      if (known->names.digits == 0) parsed.keep_number();
       continue;
     }
     if (options.stills || !options.pattern.empty()) {

@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Settles how numbers are padded: as printf() does it, a sign takes the place of a digit.
-void settle_digits(Sequence& sequence, std::span<const Input* const> files) {
+void settle_digits(FileNames& names, std::span<const Input* const> files) {
   std::optional<unsigned> negative, other;
   for (const Input* file : files) {
     const unsigned digits = file->parsed.digits();
@@ -27,11 +27,11 @@ void settle_digits(Sequence& sequence, std::span<const Input* const> files) {
     least = std::min(least.value_or(digits), digits);
   }
   if (!negative || !other) {
-    sequence.digits = negative ? *negative : *other;
+    names.digits = negative ? *negative : *other;
     return;
   }
-  sequence.counts_sign = *negative + 1 == *other;
-  sequence.digits = sequence.counts_sign ? *other : std::min(*negative, *other);
+  names.counts_sign = *negative + 1 == *other;
+  names.digits = names.counts_sign ? *other : std::min(*negative, *other);
 }
 
 void settle(Sequence& sequence) {
@@ -60,11 +60,11 @@ void settle_stills(std::vector<Sequence>& sequences) {
   std::optional<std::uint64_t> first;
   for (const Sequence& sequence : sequences) {
     for (const FrameFile& file : sequence.frames) {
-      if (sequence.digits > 0) first = std::min(first.value_or(file.frame), file.frame);
+      if (sequence.names.digits > 0) first = std::min(first.value_or(file.frame), file.frame);
     }
   }
   for (Sequence& sequence : sequences) {
-    const bool still = sequence.digits == 0 && sequence.frames.size() == 1;
+    const bool still = sequence.names.digits == 0 && sequence.frames.size() == 1;
     if (still) sequence.frames.front().frame = first.value_or(0);
   }
 }
@@ -73,7 +73,7 @@ void refuse_gaps(const std::vector<Sequence>& sequences, Cure cure) {
   const auto frames = all_frames(sequences);
   for (const Sequence& sequence : sequences) {
     for (std::size_t i = 0; i < frames.size(); ++i) {
-      if (sequence.digits == 0) break;  // A still has one frame beside a sequence.
+      if (sequence.names.digits == 0) break;  // A still has one frame beside a sequence.
       const bool hole = i > 0 && frames[i] != frames[i - 1] + 1;
       const std::uint64_t missing = hole ? frames[i - 1] + 1 : frames[i];
       if (!hole && sequence.find(missing) != nullptr) continue;
@@ -93,8 +93,17 @@ const FrameFile* Sequence::find(std::uint64_t frame) const noexcept {
   return at != frames.end() && at->frame == frame ? &*at : nullptr;
 }
 
-std::string Sequence::file_name(std::uint64_t frame) const {
-  return frame_file_name(name, digits, frame, extension, separator, base, counts_sign);
+std::string FileNames::of(const std::string& name, std::uint64_t frame) const {
+  std::string file = name;
+  if (digits > 0) {
+    const std::uint64_t below = 0 - static_cast<std::uint64_t>(base);
+    const bool negative = frame < below;
+    file += fmt::format("{}{}{:0{}}", separator, negative ? "-" : "",
+                        negative ? below - frame : frame - below,
+                        digits - (negative && counts_sign ? 1 : 0));
+  }
+  if (!extension.empty()) file += "." + extension;
+  return file;
 }
 
 std::vector<Sequence> group_sequences(const std::vector<std::string>& paths,
@@ -121,7 +130,7 @@ std::vector<Sequence> group_sequences(const std::vector<std::string>& paths,
         "before the extension",
         options.pattern);
   }
-  std::int64_t base = options.known.empty() ? 0 : options.known.front().base;
+  std::int64_t base = options.known.empty() ? 0 : options.known.front().names.base;
   for (const Input& input : inputs) {
     if (options.known.empty()) base = std::min(base, input.parsed.value());
   }
@@ -133,16 +142,18 @@ std::vector<Sequence> group_sequences(const std::vector<std::string>& paths,
     const unsigned digits = parsed.digits();
     const auto [place, is_new] = places.emplace(parsed.name, sequences.size());
     if (is_new) {
-      sequences.push_back({parsed.name, 0, parsed.extension, parsed.separator, base, false, {}});
+      sequences.push_back(
+          {.name = parsed.name,
+           .names = {.extension = parsed.extension, .separator = parsed.separator, .base = base}});
       files.emplace_back();
     }
     files[place->second].push_back(&input);
     Sequence& sequence = sequences[place->second];
-    if (sequence.extension != parsed.extension) {
+    if (sequence.names.extension != parsed.extension) {
       fail(Exit::bad_input, "{}: texture {} has files of type .{} as well; {}", path, parsed.name,
-           sequence.extension, to_cure(Cure::rename));
+           sequence.names.extension, to_cure(Cure::rename));
     }
-    if (sequence.separator != parsed.separator) {
+    if (sequence.names.separator != parsed.separator) {
       fail(Exit::bad_input, "{}: texture {} has {} as well; {}", path, parsed.name,
            sequence.frames.front().path, to_cure(Cure::rename));
     }
@@ -152,26 +163,11 @@ std::vector<Sequence> group_sequences(const std::vector<std::string>& paths,
     const std::int64_t frame = digits == 0 ? 0 : parsed.value() - base;
     sequence.frames.push_back({static_cast<std::uint64_t>(frame), path});
   }
-  for (std::size_t i = 0; i < sequences.size(); ++i) settle_digits(sequences[i], files[i]);
+  for (std::size_t i = 0; i < sequences.size(); ++i) settle_digits(sequences[i].names, files[i]);
   settle_stills(sequences);
   for (Sequence& sequence : sequences) settle(sequence);
   if (!options.allow_gaps) refuse_gaps(sequences, options.cure);
   return sequences;
-}
-
-std::string frame_file_name(const std::string& name, unsigned digits, std::uint64_t frame,
-                            const std::string& extension, const std::string& separator,
-                            std::int64_t base, bool counts_sign) {
-  std::string file = name;
-  if (digits > 0) {
-    const std::uint64_t below = 0 - static_cast<std::uint64_t>(base);
-    const bool negative = frame < below;
-    file += fmt::format("{}{}{:0{}}", separator, negative ? "-" : "",
-                        negative ? below - frame : frame - below,
-                        digits - (negative && counts_sign ? 1 : 0));
-  }
-  if (!extension.empty()) file += "." + extension;
-  return file;
 }
 
 std::string texture_path(const std::string& path) {
@@ -202,7 +198,7 @@ std::string question_of(const std::vector<Sequence>& sequences) {
         "{} textures of one frame differ only in a number, such as {} and {}; if these are frames "
         "of one texture, put the number last: NAME.FFFF.{}",
         found.size(), found[0]->frames.front().path, found[1]->frames.front().path,
-        found[0]->extension);
+        found[0]->names.extension);
   }
   return "";
 }

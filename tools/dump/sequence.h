@@ -16,18 +16,27 @@ struct FrameFile {
   std::string path;
 };
 
+/// What names of files add to the name of their texture.
+struct FileNames {
+  unsigned digits = 0;          ///< least digits of the number; 0: one file without a number
+  std::string extension = {};   ///< without the dot
+  std::string separator = ".";  ///< between name and number: ".", "_", "-" or empty
+  std::int64_t base = 0;        ///< the number of frame 0, not above 0; of all textures the same
+  bool counts_sign = false;     ///< digits count the sign of a negative number, as of printf()
+
+  /// "color.0003.exr" of "color" and 3, "color.exr" for digits 0.
+  [[nodiscard]] std::string of(const std::string& name, std::uint64_t frame) const;
+  [[nodiscard]] bool operator==(const FileNames&) const = default;
+};
+
 /// All frames of one texture.
 struct Sequence {
-  std::string name;               ///< without number and extension
-  unsigned digits = 0;            ///< least digits of the number; 0: one file without a number
-  std::string extension;          ///< without the dot
-  std::string separator = ".";    ///< between name and number: ".", "_", "-" or empty
-  std::int64_t base = 0;          ///< the number of frame 0, not above 0; of all sequences the same
-  bool counts_sign = false;       ///< digits count the sign of a negative number, as of printf()
-  std::vector<FrameFile> frames;  ///< ascending by frame
+  std::string name;  ///< without number and extension
+  FileNames names = {};
+  std::vector<FrameFile> frames = {};  ///< ascending by frame
 
   [[nodiscard]] const FrameFile* find(std::uint64_t frame) const noexcept;
-  [[nodiscard]] std::string file_name(std::uint64_t frame) const;
+  [[nodiscard]] std::string file_name(std::uint64_t frame) const { return names.of(name, frame); }
 };
 
 /// How numbers in names of files are read.
@@ -51,12 +60,6 @@ struct NumberOptions {
 [[nodiscard]] std::vector<Sequence> group_sequences(const std::vector<std::string>& paths,
                                                     const NumberOptions& options = {},
                                                     std::vector<std::string>* remarks = nullptr);
-/// "color.0003.exr" of frame 3, "color.exr" for digits 0. The number is `base`, not above 0, and
-/// the frame; `counts_sign` as in Sequence.
-[[nodiscard]] std::string frame_file_name(const std::string& name, unsigned digits,
-                                          std::uint64_t frame, const std::string& extension,
-                                          const std::string& separator = ".", std::int64_t base = 0,
-                                          bool counts_sign = false);
 /// "dumps/color" of "dumps/color.0003.exr".
 [[nodiscard]] std::string texture_path(const std::string& path);
 [[nodiscard]] bool is_separator(const std::string& text) noexcept;

@@ -48,6 +48,7 @@ struct CompareOptions {
 
 struct Pair {
   std::string left, right;
+  std::string texture;
 };
 
 struct Compared {
@@ -80,6 +81,7 @@ std::vector<Pair> pairs_of_folders(const std::string& left, const std::vector<Se
         if (same && !both.insert(name).second) continue;
         Pair& pair = pairs[{same ? name : sequence.name, same ? kOneName : file.frame}];
         (own == left ? pair.left : pair.right) = file.path;
+        pair.texture = sequence.name;
         if (same) pair.right = there;
       }
     }
@@ -120,9 +122,8 @@ Compared compare_images(const Pair& pair, const Dump& left, const Dump& right, b
 /// One for each image of the files. Adds to `left_out` what dumps do not keep of them.
 std::vector<Compared> compare_pair(const Pair& pair, const CompareOptions& options,
                                    std::vector<std::string>& left_out) {
-  const std::string name = group_sequences({pair.left}).front().name;
   const Hints hints =
-      settle_formats(std::vector{pair.left, pair.right}, hints_for(options.geometry, name));
+      settle_formats(std::vector{pair.left, pair.right}, hints_for(options.geometry, pair.texture));
   const std::vector<Dump> left = read_dumps(pair.left, hints),
                           right = read_dumps(pair.right, hints);
   const auto same_image = [](const Dump& a, const Dump& b) { return a.info.image == b.info.image; };
@@ -182,7 +183,7 @@ Exit compare(const CompareOptions& options, const Cli& cli) {
   const auto left = group_sequences({options.left}, with_gaps(options.geometry.numbers));
   const auto right = group_sequences({options.right}, with_gaps(options.geometry.numbers));
   const auto pairs = folders ? pairs_of_folders(options.left, left, options.right, right)
-                             : std::vector<Pair>{{options.left, options.right}};
+                             : std::vector<Pair>{{options.left, options.right, left.front().name}};
   std::vector<Sequence> all = left;
   all.insert(all.end(), right.begin(), right.end());
   check_names(options.geometry, all);

@@ -32,11 +32,11 @@ struct TextureReport {
 };
 
 struct ContainerReport {
-  const ContainerInput& input;
+  ContainerInput& input;
   Totals totals;
   std::vector<TextureReport> textures;
   std::optional<double> fps;
-  bool metadata = false;  ///< text shows metadata
+  bool metadata = false;  ///< shows what is kept of files
   std::string damage;     ///< the error that ended reading
 };
 

@@ -10,9 +10,9 @@
 #include "geometry_flags.h"
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <memory>
+#include <span>
 
 namespace gicodec::tools {
 namespace {
@@ -20,13 +20,14 @@ namespace {
 constexpr const char* kFooter =
     "Writes dumps of the same names that hold only the probes, or blocks, of a box of the grid,\n"
     "texels and attributes as they are, but gicodec:origin, which goes to the first one of the\n"
-    "box. Files that are there already are kept unless --overwrite is given, the inputs always.\n"
+    "box, and the other gicodec: ones, which say its size also where the input has none. Files\n"
+    "that are there already are kept unless --overwrite is given, the inputs always.\n"
     "\n"
     "Examples:\n"
     "  gicodec crop --origin 4,0,8 --size 8x8x8 -o small/ dumps/villa/*.exr\n"
     "  gicodec crop --origin 0,0,0 --size 4x4x4 --compression piz -o small/ dumps/villa/\n";
 
-constexpr std::array<const char*, 5> kCompressions = {"none", "rle", "zips", "zip", "piz"};
+constexpr auto kCompressions = std::span(kExrCompressions).first<5>();
 
 struct CropOptions {
   std::vector<std::string> inputs;
@@ -99,10 +100,9 @@ Dump crop_dump(const Dump& from, const Grid& origin, const Grid& size, const std
 
 /// The same file name, with the extension of EXR for images that are only read.
 std::string output_path(const CropOptions& options, const Sequence& sequence, std::uint64_t frame) {
-  const auto name =
-      frame_file_name(sequence.name, sequence.digits, frame, written_extension(sequence),
-                      sequence.separator, sequence.base, sequence.counts_sign);
-  return (std::filesystem::path(options.output) / name).string();
+  FileNames names = sequence.names;
+  names.extension = written_extension(sequence);
+  return (std::filesystem::path(options.output) / names.of(sequence.name, frame)).string();
 }
 
 /// Refuses outputs that would destroy a file, before any is written.

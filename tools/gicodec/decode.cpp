@@ -54,7 +54,7 @@ struct DecodeOptions {
 /// Throws for a second frame of a texture whose file names have no number.
 void check_numbered(const StoredTexture& texture, std::optional<std::uint64_t>& written,
                     std::uint64_t frame, const std::string& path) {
-  if (texture.digits == 0 && written) {
+  if (texture.names.digits == 0 && written) {
     fail(Exit::bad_input,
          "{}: the files of texture {} have no frame numbers, so that frame {} would take the place "
          "of frame {}; {}",
@@ -137,7 +137,9 @@ Exit decode(const DecodeOptions& options, const Cli& cli) {
   if (options.plain) input.drop_attribute(kKtx2Scheme);
   select_dumps(input, options.volume);
   for (std::size_t i = 0; i < input.textures().size(); ++i) {
-    if (input.is_selected(i)) require_format(input.textures()[i], input.path());
+    if (!input.is_selected(i)) continue;
+    require_format(input.textures()[i], input.path());
+    require_attributes(input.textures()[i], input.path());
   }
   InputFiles inputs;
   inputs.add(options.input == "-" ? "/dev/stdin" : options.input);
@@ -201,7 +203,7 @@ Exit decode(const DecodeOptions& options, const Cli& cli) {
     }
     if (!texture.unsaid.empty()) {
       remark(fmt::format("texture {}: {} files do not have its attributes {}", texture.name,
-                         texture.extension, texture.unsaid));
+                         texture.names.extension, texture.unsaid));
     }
     if (!texture.inactive.empty()) {
       remark(fmt::format("texture {}: {} inactive probes were not stored and are zero",

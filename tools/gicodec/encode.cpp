@@ -162,8 +162,9 @@ std::vector<Lane> make_lanes(const EncodeOptions& options, const std::vector<Seq
     const bool leaves_out = !inactive.empty() && !roles.states[lanes.size()];
     if (leaves_out) stored.inactive = inactive;
     if (stored.info.fell_back && !silent) {
-      remark(fmt::format("texture {}: its values are no 10-bit codes; it is kept as {}",
-                         stored.name, record_text(stored.info.desc.record)));
+      remark(fmt::format(
+          "texture {}: is kept as {}, since not all of its values are n/1023 (10-bit codes)",
+          stored.name, record_text(stored.info.desc.record)));
     }
     if (!stored.dropped.empty() && !silent) {
       remark(fmt::format("{}: {} not kept", stored.dropped_in, stored.dropped));

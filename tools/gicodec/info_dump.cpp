@@ -19,13 +19,13 @@ std::string command_for(const std::string& path) {
   return fmt::format("gicodec encode -o {} {}", shell_word(stem + ".gic"), shell_word(path));
 }
 
-/// "8x8x1 blocks", or the grid of probes.
-std::string blocks_text(const TextureDesc& desc) {
-  if (is_probes(desc)) {
-    return fmt::format("{} probes of {}x{} texels and {} of guard band", to_string(desc.grid),
-                       desc.block.x, desc.block.y, desc.guard_band);
+/// A number of a compression as its name.
+std::string value_text(const Attribute& attribute) {
+  for (std::size_t i = 0; i < kExrCompressions.size(); ++i) {
+    const bool is = attribute.type == "compression" && attribute.value == fmt::format("0x0{}", i);
+    if (is) return kExrCompressions[i];
   }
-  return fmt::format("blocks of {}x{}x{}", desc.block.x, desc.block.y, desc.block.z);
+  return attribute.value;
 }
 
 }  // namespace
@@ -65,7 +65,7 @@ void print_dump(const std::string& path, bool json) {
     for (const std::string& what : image.lost) print("    not kept: {}\n", what);
     for (const Attribute& attribute : image.attributes) {
       constexpr std::size_t kShown = 60;
-      const std::string& value = attribute.value;
+      const std::string value = value_text(attribute);
       print("    {}: {}{}\n", attribute.name, value.substr(0, kShown),
             value.size() > kShown ? fmt::format("... ({} bytes)", value.size()) : "");
     }

@@ -130,7 +130,7 @@ Json texture_json(const ContainerReport& report, std::size_t place) {
   json["all"] = sums_json(own.all);
   if (const Json native = own.payload.json(entry.desc.record); !native.is_null())
     json["native"] = native;
-  const Metadata& beside = report.input.beside(place);
+  const Metadata beside = report.metadata ? report.input.beside(place) : Metadata{};
   if (!entry.metadata.empty() || !beside.empty()) {
     json["metadata"] = metadata_json(entry.metadata, beside);
   }

@@ -183,7 +183,8 @@ void print_texture(const ContainerReport& report, std::size_t place) {
   own.payload.print(desc.record);
   for (const PacketLine& packet : own.packets) print_packet(packet);
   if (!report.metadata) return;
-  for (const auto* const metadata : {&entry.metadata, &report.input.beside(place)}) {
+  const Metadata beside = report.input.beside(place);
+  for (const auto* const metadata : {&entry.metadata, &beside}) {
     for (const auto& [key, value] : *metadata) print("  {} = {}\n", key, value);
   }
 }

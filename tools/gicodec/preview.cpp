@@ -141,10 +141,10 @@ Loaded load(const PreviewOptions& options, bool quiet) {
   check_names(options.geometry, sequences);
   const Hints hints =
       settle_formats({&options.input, 1}, hints_for(options.geometry, sequences.front().name));
-  auto images = read_dumps(options.input, hints);
+  const auto images = read_dump_infos(options.input, hints);
   const std::string what =
-      images.size() == 1 ? options.input : options.input + ", " + image_words(images.front().info);
-  return {std::move(images.front()), what};
+      images.size() == 1 ? options.input : options.input + ", " + image_words(images.front());
+  return {read_dump(options.input, hints_of(images.front())), what};
 }
 
 Exit preview(const PreviewOptions& options, const Cli& cli) {

@@ -3,6 +3,7 @@
 #include "common/cli.h"
 #include "common/container_input.h"
 #include "common/error_flags.h"
+#include "common/file_forms.h"
 #include "common/file_names.h"
 #include "common/volume_words.h"
 #include "difference.h"
@@ -97,7 +98,7 @@ std::vector<std::string> compare_given(DumpInfo given, DumpInfo stored) {
 /// The file of a frame; null if none was given. A still is of the frame that has it.
 const FrameFile* file_of(const Sequence& sequence, std::uint64_t frame, const Report& report) {
   const FrameFile& first = sequence.frames.front();
-  if (sequence.digits == 0 && report.unseen.contains(first.path)) return &first;
+  if (sequence.names.digits == 0 && report.unseen.contains(first.path)) return &first;
   return sequence.find(frame);
 }
 
@@ -121,7 +122,7 @@ Finding compare_frame(std::size_t id, const ContainerInput& input, const Report&
   finding.file = file->path;
   const Dump dump = read_dump(file->path, hints_of(texture.info));
   // Images of other kinds decode to EXR, so only texels can be compared.
-  if (texture.made_of_files && sequence->extension == texture.extension) {
+  if (texture.made_of_files && sequence->names.extension == texture.names.extension) {
     const bool decoded = find_attribute(dump.info.attributes, kLossyAttribute) != nullptr;
     finding.headers =
         compare_given(dump.info, decoded ? texture.decoded_info(frame) : texture.info_at(frame));
@@ -198,18 +199,16 @@ Exit verify(const VerifyOptions& options, const Cli& cli) {
   ContainerInput input(options.input, options.decoder);
   input.read_metadata();
   select_volume(input, options.volume);
+  for (std::size_t i = 0; i < input.textures().size(); ++i) {
+    const StoredTexture& texture = input.textures()[i];
+    if (texture.no_dump.empty() && input.is_selected(i)) require_attributes(texture, input.path());
+  }
   std::vector<Sequence> sequences;
   for (const std::string& path : options.files) require_exists(path);
   if (!options.files.empty()) {
     NumberOptions numbers{.allow_gaps = true};
     for (const StoredTexture& texture : input.textures()) {
-      numbers.known.push_back({file_stem(texture),
-                               texture.digits,
-                               texture.extension,
-                               texture.separator,
-                               texture.base,
-                               texture.counts_sign,
-                               {}});
+      numbers.known.push_back({file_stem(texture), texture.names});
     }
     sequences = group_sequences(options.files, numbers);
   }

@@ -28,7 +28,8 @@ PictureFolder::Place PictureFolder::texture(const std::string& volume, const std
 }
 
 PictureFolder::Place PictureFolder::checked(const std::string& name, std::uint32_t number) {
-  std::string path = folder_ + "/" + tools::frame_file_name(name, 4, number, "png");
+  std::string path =
+      folder_ + "/" + tools::FileNames{.digits = 4, .extension = "png"}.of(name, number);
   if (std::exchange(number_, number) != number) made_.clear();
   if (!made_.insert(path).second) return {path, tools::Existing::replace};
   tools::check_output(path, inputs_, existing_);
