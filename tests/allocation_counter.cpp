@@ -2,6 +2,8 @@
 // glibc's.
 #include "allocation_counter.h"
 
+#include "sanitizers.h"
+
 #include <atomic>
 #include <cerrno>
 #include <cstdint>
@@ -35,15 +37,7 @@ void start_peak() noexcept { g_peak = g_now.load(); }
 using gicodec::test::add;
 using gicodec::test::remove;
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define GICODEC_SANITIZED
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define GICODEC_SANITIZED
-#endif
-#endif
-
-#if defined(GICODEC_SANITIZED)
+#if defined(GICODEC_ASAN) || defined(GICODEC_TSAN)
 
 // GCC has no header for these.
 extern "C" {

@@ -1,6 +1,7 @@
 #include "support.h"
 
 #include "base/checksum.h"
+#include "sanitizers.h"
 
 #include <sanitizer/asan_interface.h>
 
@@ -42,7 +43,7 @@ namespace test {
 bool everything() { return std::getenv("GICODEC_TEST_EVERYTHING") != nullptr; }
 
 bool Sweep::takes() {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if defined(GICODEC_ASAN) || defined(GICODEC_TSAN)
   constexpr std::size_t kOneIn = 7;
 #else
   constexpr std::size_t kOneIn = 3;

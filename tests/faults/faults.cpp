@@ -78,9 +78,14 @@ void operator delete[](void* memory, std::align_val_t) noexcept { std::free(memo
 void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
 void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
 
+using Create = int(pthread_t*, const pthread_attr_t*, void* (*)(void*), void*);
+/// The sanitizer's, where it is linked into the program; it has to know all threads.
+extern "C" [[gnu::weak]] Create __interceptor_pthread_create;
+
 extern "C" int pthread_create(pthread_t* thread, const pthread_attr_t* attributes,
                               void* (*start)(void*), void* argument) noexcept {
-  using Create = int (*)(pthread_t*, const pthread_attr_t*, void* (*)(void*), void*);
-  static const auto next = reinterpret_cast<Create>(dlsym(RTLD_NEXT, "pthread_create"));
+  static const auto next = __interceptor_pthread_create != nullptr
+                               ? &__interceptor_pthread_create
+                               : reinterpret_cast<Create*>(dlsym(RTLD_NEXT, "pthread_create"));
   return gicodec::test::fails() ? EAGAIN : next(thread, attributes, start, argument);
 }

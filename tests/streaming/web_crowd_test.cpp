@@ -1,4 +1,5 @@
 // A crowd of handshakes, as after a restart of a server with many clients.
+#include "sanitizers.h"
 #include "stream/web.h"
 #include "stream/web_link.h"
 
@@ -6,9 +7,6 @@
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <unistd.h>
-#ifdef __SANITIZE_ADDRESS__
-#include <sanitizer/lsan_interface.h>
-#endif
 
 #include <cerrno>
 #include <chrono>
@@ -61,9 +59,7 @@ bool waits_until(const auto& condition) {
 /// libwebsockets 4.1 does not free all that it makes of a context without TLS.
 template <typename... Args>
 std::unique_ptr<Web> make_web(Args&&... args) {
-#ifdef __SANITIZE_ADDRESS__
-  const __lsan::ScopedDisabler not_looked_for;
-#endif
+  const test::LeakAllowed not_looked_for;
   return std::make_unique<Web>(std::forward<Args>(args)...);
 }
 

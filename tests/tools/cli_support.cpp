@@ -1,5 +1,7 @@
 #include "tools/cli_support.h"
 
+#include "sanitizers.h"
+
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -34,13 +36,13 @@ std::optional<long> peak_of(pid_t process) {
 
 /// In the child.
 void limit_memory(rlim_t bytes) {
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(GICODEC_ASAN)
   constexpr rlim_t kSanitizer = 256;  // MiB
   const std::string options =
       fmt::format("quarantine_size_mb=1:hard_rss_limit_mb={}:max_allocation_size_mb={}",
                   (bytes >> 20) + kSanitizer, bytes >> 20);
   setenv("ASAN_OPTIONS", options.c_str(), 1);
-#elif defined(__SANITIZE_THREAD__)
+#elif defined(GICODEC_TSAN)
   // It takes several times the memory that it watches, so that single allocations are all to look
   // at.
   const char* const others = getenv("TSAN_OPTIONS");
