@@ -187,7 +187,7 @@ TEST(Sequence, NumbersThatAreNoFrames) {
   EXPECT_EQ(beside[0].frames[0].frame, 7U);
   EXPECT_EQ(all_frames(beside), (std::vector<std::uint64_t>{7, 8}));
   // As a container has them.
-  Sequence still{"irr_1001", 0, "exr", ".", 0, false, {}};
+  Sequence still{.name = "irr_1001", .names = {.extension = "exr"}};
   EXPECT_EQ(names({"irr_1001.exr"}, {.known = {still}}), Names{"irr_1001"});
 }
 
