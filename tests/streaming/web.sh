@@ -56,7 +56,7 @@ both() {
   start enet "$bin/gi-client" --connect 127.0.0.1:${ports[0]} $view --updates 12 --expect-proofs
   enet=$last
   start crowd "$bin/gi-client" --connect wss://127.0.0.1:${ports[1]} --pin "$(pin_of ../server.pem)" \
-    --simulate 5 --gltf $room --updates $((5 * slower)) --expect-proofs
+    --simulate 5 --gltf $room --updates $((12 * slower)) --expect-proofs
   ends 0 $last crowd
   for i in 0 1 2; do
     ends 0 ${clients[i]} client-$i
