@@ -281,8 +281,8 @@ TEST_F(CliCures, FilesOfOtherKinds) {
   fs::create_directories(path("in/sub"));
   write_bytes(path("in/notes.txt"), {});
   program_.succeed({"preview", "in/a.exr", "-o", "in/b.png"});
-  follow(Cure::name_others, "b.png, notes.txt, sub/; name them to take them",
-         {"encode", "-o", "x.gic", "in"}, {{"encode", "-o", "x.gic", "in", "in/b.png"}}, Exit::ok);
+  follow(Cure::name_others, "b.png, sub/; name them to take them", {"encode", "-o", "x.gic", "in"},
+         {{"encode", "-o", "x.gic", "in", "in/b.png"}}, Exit::ok);
   program_.succeed({"verify", "x.gic", "in/a.exr", "in/b.png"});
   fs::remove(path("in/a.exr"));
   follow(Cure::name_others, {"encode", "-o", "x.gic", "in"},
@@ -365,6 +365,19 @@ TEST_F(CliCures, Containers) {
   follow(Cure::other_files, "--files takes", {"decode", "x.gic", "--files", "dds", "-o", "files"},
          {{"decode", "x.gic", "--files", "ktx2", "-o", "files"}});
   EXPECT_EQ(file_bytes(path("files/a.exr.ktx2")), file_bytes(path("in/a.exr.ktx2")));
+}
+
+TEST_F(CliCures, Codes) {
+  Dump black = without_alpha(foreign(Format::R32G32B32A32_SFLOAT));
+  std::ranges::fill(black.texels, std::byte{0});
+  write("in/black.exr", black);
+  program_.succeed({"encode", "-o", "x.gic", "in"});
+  follow(Cure::as_floats, to_cure(Cure::as_floats, "R32G32B32A32_SFLOAT"),
+         {"decode", "x.gic", "--files", "dds", "-o", "dds"},
+         {{"encode", "-o", "y.gic", "in", "--vk-format", "R32G32B32A32_SFLOAT"},
+          {"decode", "y.gic", "--files", "dds", "-o", "dds"},
+          {"compare", "in/black.exr", "dds/black.dds"}});
+  expect_back();
 }
 
 TEST_F(CliCures, Memory) {

@@ -47,6 +47,42 @@ class CliImages : public testing::Test {
   Program program_;
 };
 
+TEST_F(CliImages, WhatNoDumpIsAndOtherKindsLackIsNamed) {
+  Dump raw = random_dump(map_texture(Format::R16_SFLOAT, {8, 8, 1}, {8, 8, 1}), 1);
+  write("a.0000.raw", {&raw, 1});
+  for (const char* name : {"in/a.json", "in/scene.json"}) {
+    write_bytes(program_.path(name), std::as_bytes(std::span("{}")));
+  }
+  const auto packed = program_.succeed({"encode", "-o", "x.gic", "in"});
+  expect_part(packed.err, "leaves out a.json, scene.json, which are no dumps");
+  // A shell names sidecars too.
+  program_.succeed({"encode", "-o", "x.gic", "in/a.0000.raw", "in/a.0000.json"});
+
+  Dump rgb = random_dump(map_texture(Format::R16G16B16A16_SFLOAT, {8, 8, 1}, {8, 8, 1}), 2);
+  rgb = without_alpha(rgb);
+  rgb.info.attributes = {{"exr:origin", "v2i", "-7 100"}};
+  write("rgb.exr", {&rgb, 1});
+  program_.succeed({"encode", "-o", "y.gic", "in/rgb.exr"});
+  const auto files = program_.succeed({"decode", "y.gic", "-o", "out", "--files", "ktx2"});
+  expect_part(files.err, "exr:origin");
+  expect_part(files.err, "an alpha of 0");
+  const auto compared = program_.succeed({"compare", "in/rgb.exr", "out/rgb.ktx2"});
+  expect_part(compared.out, "their attributes and channels are not compared");
+}
+
+TEST_F(CliImages, CroppedLayersArePackedAsLayers) {
+  Dump layer = random_dump(map_texture(Format::R32G32B32_SFLOAT, {16, 16, 1}, {8, 8, 1}), 1);
+  layer.info.attributes.clear();
+  const char* letter = "RGB";
+  for (std::size_t i = 0; i < 3; ++i) {
+    layer.info.channels.names[i] = fmt::format("Lightmap.{}", letter[i]);
+  }
+  write("a.exr", {&layer, 1});
+  program_.succeed({"crop", "--origin", "1,0,0", "--size", "1x1x1", "-o", "small", "in"});
+  program_.succeed({"encode", "-o", "x.gic", "small"});
+  program_.succeed({"verify", "x.gic", "small"});
+}
+
 TEST_F(CliImages, LevelsAndFacesComeBack) {
   auto packed = images_of(Format::R16G16B16A16_SFLOAT, {16, 16, 1}, false, 5, 6);
   set_attribute(packed[0].info.attributes, {kKtx2Scheme, "string", "Zstandard"});
@@ -173,7 +209,7 @@ TEST_F(CliImages, InfoSaysWhatAFileHolds) {
   write("sky box.ktx2", images_of(Format::R16_SFLOAT, {8, 8, 1}, false, 2, 6));
   const std::string text = program_.succeed({"info", "in/sky box.ktx2"}).out;
   for (const char* part : {"12 images", "px: R16_SFLOAT, 8x8", "nz.mip1: R16_SFLOAT, 4x4",
-                           "gicodec encode -o 'sky box.gic' 'in/sky box.ktx2' packs it"}) {
+                           "to pack it: gicodec encode -o 'sky box.gic' 'in/sky box.ktx2'"}) {
     expect_part(text, part);
   }
   expect_part(program_.succeed({"info", "--format", "json", "in/sky box.ktx2"}).out,

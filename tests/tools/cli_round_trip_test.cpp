@@ -265,7 +265,7 @@ TEST(Cli, PreviewWritesPng) {
   program.make_dumps(2);
   program.succeed({"encode", "-o", "x.gic", "in"});
   const Outcome said = program.succeed({"preview", "x.gic", "--frame", "1", "-o", "c.png"});
-  EXPECT_NE(said.err.find("c.png: texture color, frame 1 written"), std::string::npos) << said.err;
+  EXPECT_NE(said.err.find("c.png: shows texture color, frame 1"), std::string::npos) << said.err;
   EXPECT_EQ(program.succeed({"preview", "-q", "x.gic", "-o", "quiet.png"}).err, "");
   program.succeed({"preview", "x.gic", "--texture", "vis", "-o", "v.png"});
   program.succeed({"preview", "in/color.0001.exr", "-o", "d.png"});

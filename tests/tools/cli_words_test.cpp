@@ -82,6 +82,13 @@ TEST_F(CliWords, ValuesThatAreNoCodes) {
   // The EXR that stands for it is read as the same format.
   program_.succeed({"decode", "z.gic", "-o", "z"});
   program_.succeed({"compare", "c.png", "z/c.exr"});
+  std::filesystem::create_directories(program_.path("pictures"));
+  std::filesystem::copy(program_.path("c.png"), program_.path("pictures/c.png"));
+  std::filesystem::copy(dumps_[0], program_.path("pictures/color.0000.exr"));
+  program_.succeed({"encode", "-o", "p.gic", "pictures", "pictures/c.png"});
+  program_.succeed({"decode", "p.gic", "-o", "p"});
+  program_.succeed({"verify", "p.gic", "pictures"});
+  program_.succeed({"compare", "pictures", "p"});
   program_.succeed(
       {"encode", "-o", "y.gic", "--grid", "4x2x3", "--vk-format", "R8G8B8A8_UNORM", "c.png"});
   program_.expect_failure(

@@ -173,13 +173,13 @@ TEST(Sequence, NumbersThatAreNoFrames) {
   // As flags say.
   EXPECT_EQ(names({"irr.0001.exr", "irr.0002.exr"}, {.stills = true}),
             (Names{"irr.0001", "irr.0002"}));
-  EXPECT_EQ(names({"irr_1001.exr", "irr_1002.exr", "b_1.exr", "b_2.exr"}, {.pattern = "b_#"}),
+  EXPECT_EQ(names({"irr_1001.exr", "irr_1002.exr", "b_1.exr", "b_2.exr"},
+                  {.stills = true, .patterns = {"b_#"}}),
             (Names{"irr_1001", "irr_1002", "b#"}));
-  EXPECT_EQ(names({"u1_v1.exr", "u1_v2.exr"}, {.pattern = "*v##.exr"}), Names{"u1_v#"});
-  for (const NumberOptions& wrong : {NumberOptions{.pattern = "a_"},
-                                     {.pattern = "b_#"},
-                                     {.pattern = "a_#.dds"},
-                                     {.stills = true, .pattern = "a_#"}}) {
+  EXPECT_EQ(names({"u1_v1.exr", "u1_v2.exr"}, {.patterns = {"*v##.exr"}}), Names{"u1_v#"});
+  for (const NumberOptions& wrong : {NumberOptions{.patterns = {"a_"}},
+                                     {.patterns = {"b_#"}},
+                                     {.patterns = {"a_#", "a_#.dds"}}}) {
     EXPECT_THROW((void)names({"a_1.exr"}, wrong), Error);
   }
   // Stills are of the first frame.
@@ -201,7 +201,7 @@ TEST(Sequence, FilesOfOtherShapesAreStills) {
   }
   EXPECT_EQ(group_sequences(paths, {}, &remarks).size(), 3U);
   ASSERT_EQ(remarks.size(), 1U);
-  EXPECT_NE(remarks[0].find("taken for stills, since their shapes or formats differ"),
+  EXPECT_NE(remarks[0].find("taken for a texture of its own, since their shapes or formats differ"),
             std::string::npos)
       << remarks[0];
   remarks.clear();
@@ -217,8 +217,8 @@ TEST(Sequence, PatternsOfManyStars) {
   const std::string name = std::string(240, 'a') + "1.exr";
   std::string pattern;
   for (int i = 0; i < 100; ++i) pattern += "*a";
-  EXPECT_EQ(group_sequences({name}, {.pattern = pattern + "*#"})[0].names.digits, 1U);
-  EXPECT_THROW((void)group_sequences({name}, {.pattern = pattern + "*b#"}), Error);
+  EXPECT_EQ(group_sequences({name}, {.patterns = {pattern + "*#"}})[0].names.digits, 1U);
+  EXPECT_THROW((void)group_sequences({name}, {.patterns = {pattern + "*b#"}}), Error);
 }
 
 TEST(Sequence, LinksToNothingAreLeftOut) {
@@ -228,7 +228,8 @@ TEST(Sequence, LinksToNothingAreLeftOut) {
   std::vector<std::string> remarks;
   EXPECT_EQ(group_sequences({directory.path("")}, {}, &remarks).size(), 1U);
   ASSERT_EQ(remarks.size(), 1U);
-  EXPECT_NE(remarks[0].find("leaves out b.exr (a link to nothing); name them"), std::string::npos)
+  EXPECT_NE(remarks[0].find("leaves out b.exr (a link to nothing), which is no dump"),
+            std::string::npos)
       << remarks[0];
 }
 

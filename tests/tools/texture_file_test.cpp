@@ -389,9 +389,13 @@ TEST_F(Sidecar, SaysWhatIsWrong) {
   write_bytes(path_, std::vector<std::byte>(64));
   expect_part(message_of(path_), "has no sidecar");
   for (const auto& [json, part] : {
-           std::pair("", "is no JSON object"),
+           std::pair("", "is no JSON from line 1 on"),
            std::pair("[]", "is no JSON object"),
-           std::pair("{", "is no JSON object"),
+           std::pair("{\n  \"extent\": [8, 8],\n}", "is no JSON from line 3 on"),
+           std::pair("{\"extent\": [8, 8], \"extent\": [4, 4]}", "\"extent\" stands twice"),
+           std::pair("{\"extent\": [8, 8], \"attributes\": {\"a\": \"1\", \"a\": \"2\"}}",
+                     "\"a\" stands twice"),
+           std::pair("{\"extent\": [8, 8], \"attributes\": {\"\": \"1\"}}", "has no name"),
            std::pair("{}", "lacks \"extent\""),
            std::pair("{\"extent\": [8]}", "no list of two or three sides"),
            std::pair("{\"extent\": [8, 0]}", "no list of two or three sides"),

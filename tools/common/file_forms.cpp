@@ -31,6 +31,13 @@ bool can_have(ImageKind kind, const Attribute& attribute) {
   return kind != ImageKind::exr || exr_has_attribute(attribute);
 }
 
+/// True if EXR files had all channels of a texture but alpha.
+bool lacks_alpha(const StoredTexture& texture) {
+  const auto used = texture.info.desc.record.used();
+  return texture.made_of_files && !texture.info.channels.alpha &&
+         std::ranges::any_of(used, [](const Component& one) { return one.name() == "A"; });
+}
+
 /// Makes an image of a file the one image of its own.
 void own_file(StoredTexture& texture) {
   texture.file = texture.name;
@@ -51,8 +58,9 @@ void set_files(StoredTexture& texture, ImageKind kind) {
   texture.names.extension = std::ranges::find(kForms, kind, &Form::kind)->ending;
   std::set<std::string> unsaid;
   const auto remove = [&](const Attribute& attribute) {
-    if (is_head_field(attribute.name)) return true;
-    if (can_have(kind, attribute)) return false;
+    const bool field = is_head_field(attribute.name);
+    if (field && !attribute.name.starts_with("exr:")) return true;
+    if (!field && can_have(kind, attribute)) return false;
     unsaid.insert(attribute.name);
     return true;
   };
@@ -67,6 +75,23 @@ void set_files(StoredTexture& texture, ImageKind kind) {
   for (const std::string& name : unsaid) {
     texture.unsaid += (texture.unsaid.empty() ? "" : ", ") + name;
   }
+  const Record& record = texture.info.desc.record;
+  if (kind == ImageKind::exr && record.components[0].type == ComponentType::opaque) {
+    texture.unlike = "its compressed blocks become channels of numbers, which are no picture";
+  }
+  if (kind != ImageKind::exr && lacks_alpha(texture)) {
+    texture.unlike =
+        "its files get an alpha of 0, since their format has one and the EXR files none";
+  }
+}
+
+/// Advice for EXR files of floats whose values all are 10-bit codes; else empty.
+std::string float_advice(const StoredTexture& texture) {
+  const SampleType type = texture.info.channels.types[0];
+  const bool codes = texture.info.desc.record.components[0].bits == 10;
+  if (!texture.made_of_files || !codes || type == SampleType::uint32) return "";
+  return "; " + to_cure(Cure::as_floats,
+                        type == SampleType::half ? "R16G16B16A16_SFLOAT" : "R32G32B32A32_SFLOAT");
 }
 
 void require_attributes(const StoredTexture& texture, const std::string& path) {
@@ -92,7 +117,7 @@ void require_format(const StoredTexture& texture, const std::string& path) {
   }
   fail(Exit::bad_input, "{}: texture {} is of format {}, which {} files cannot have; {}", path,
        texture.name, find_format(format)->name, texture.names.extension,
-       to_cure(Cure::other_files, others));
+       to_cure(Cure::other_files, others) + float_advice(texture));
 }
 
 }  // namespace gicodec::tools

@@ -85,10 +85,16 @@ double automatic_scale(const std::vector<float>& values, double gamma) {
 std::vector<std::uint8_t> colour_pixels(const Dump& dump, const PreviewTuning& tuning) {
   const std::vector<float> values = values_of(dump, 3);
   const bool codes = dump.info.desc.record.components[0].type == ComponentType::unorm;
+  std::vector<std::uint8_t> pixels(values.size());
+  if (codes && dump.info.desc.record.components[0].bits != 10 && !tuning.gamma &&
+      !tuning.exposure) {
+    // A picture already.
+    for (std::size_t i = 0; i < values.size(); ++i) pixels[i] = to_byte(values[i]);
+    return pixels;
+  }
   const double gamma = tuning.gamma.value_or(codes ? kColourGamma : 1);
   const double scale =
       tuning.exposure ? std::exp2(*tuning.exposure) : automatic_scale(values, gamma);
-  std::vector<std::uint8_t> pixels(values.size());
   for (std::size_t i = 0; i < values.size(); ++i) {
     check_now_and_then(i);
     const double value = scale * std::pow(std::max(0.0F, values[i]), gamma);

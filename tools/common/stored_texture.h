@@ -41,6 +41,7 @@ struct StoredTexture {
   std::string dropped;                  ///< what of the files is not kept, in words
   std::string dropped_in;               ///< the first file with some of that; not stored
   std::string unsaid;                   ///< attributes that its kind of file cannot hold
+  std::string unlike;                   ///< what files of another kind show otherwise, in words
   std::uint64_t file_bytes = 0;         ///< of all files that it came from; 0: unknown
   bool made_of_files = false;           ///< it has the headers of its files
   std::string no_dump;                  ///< why it cannot become a dump; empty if it can

@@ -12,7 +12,7 @@ std::string_view cure_text(Cure cure) noexcept {
     case Cure::describe_raw:
       return "--vk-format and --extent do without one";
     case Cure::fix_format:
-      return "check its format, or give --vk-format";
+      return "check its format and size, or give --vk-format and --extent";
     case Cure::check_format:
       return "check --vk-format, or leave it out";
     case Cure::cut_rest:
@@ -63,6 +63,8 @@ std::string_view cure_text(Cure cure) noexcept {
       return "\"gicodec encode\" and \"gicodec decode --files raw\" make a file of each image";
     case Cure::other_files:
       return "--files takes {} for it";
+    case Cure::as_floats:
+      return "\"gicodec encode --vk-format {}\" packs its values as floats, which they can have";
     case Cure::other_folder:
       return "decode to another folder";
     case Cure::one_frame:

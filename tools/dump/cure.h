@@ -40,6 +40,7 @@ enum class Cure {
   crop,
   raw_files,
   other_files,
+  as_floats,
   other_folder,
   one_frame,
   more_memory,

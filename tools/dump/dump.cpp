@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
+#include <fstream>
 #include <system_error>
 
 namespace gicodec::tools {
@@ -25,9 +26,21 @@ void require_no_pipe(const std::string& path) {
        path);
 }
 
+/// Throws for the file of three lines that Git LFS has in place of a large one.
+void require_no_pointer(const std::string& path) {
+  std::string line;
+  std::ifstream file(path, std::ios::binary);
+  line.resize(24);
+  file.read(line.data(), static_cast<std::streamsize>(line.size()));
+  if (!line.starts_with("version https://git-lfs")) return;
+  fail(Exit::bad_input, "{}: is a pointer of Git LFS to a file, and not that file; {}", path,
+       to_cure(Cure::fetch_lfs));
+}
+
 std::vector<Dump> read(const std::string& path, const Hints& hints, bool texels) {
   const ImageKind kind = require_image_kind(path);
   require_no_pipe(path);
+  require_no_pointer(path);
   if (kind == ImageKind::exr) return read_exr(path, hints, texels);
   return is_written(kind) ? read_texture_file(path, kind, hints, texels)
                           : read_image(path, kind, hints, texels);
@@ -293,6 +306,8 @@ void fail_sample(const DumpInfo& info, const Component& component, SampleType ty
   const std::string fault =
       component.type == ComponentType::unorm && type != SampleType::uint32
           ? fmt::format("is not n/{}, so it is no {}-bit code", max_code(component), component.bits)
+      : component.type == ComponentType::sfloat
+          ? fmt::format("is no float of {} bits", component.bits)
           : fmt::format("is no {}-bit code; files of this format hold codes 0 to {}",
                         component.bits, max_code(component));
   const std::string cure =

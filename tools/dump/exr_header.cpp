@@ -78,7 +78,7 @@ class HeaderWalk {
   }
 
   std::vector<ExrPart> run() {
-    if (word() != kMagic) fail(Exit::bad_input, "{}: is not an EXR file{}", path_, pointer());
+    if (word() != kMagic) fail(Exit::bad_input, "{}: is not an EXR file", path_);
     const std::uint32_t version = word();
     if ((version & 0xFF) != 2) {
       fail(Exit::bad_input, "{}: EXR version {} is not supported", path_, version & 0xFF);
@@ -109,16 +109,6 @@ class HeaderWalk {
          "{}: {}holds deep data, of several samples a texel, which no texture is; {}", path_,
          part.empty() ? "" : fmt::format("part {} ", part), to_cure(Cure::flatten));
   }
-  /// A file of three lines in place of a large one.
-  [[nodiscard]] std::string pointer() {
-    std::rewind(file_.get());
-    std::array<char, 24> start{};
-    const std::size_t got = std::fread(start.data(), 1, start.size(), file_.get());
-    return std::string_view(start.data(), got).starts_with("version https://git-lfs")
-               ? ", but a pointer of Git LFS to one; " + to_cure(Cure::fetch_lfs)
-               : "";
-  }
-
   void finish_part() {
     if (part_.width == 0) fail(Exit::bad_input, "{}: its EXR header lacks dataWindow", path_);
     if (part_.channels.empty()) fail(Exit::bad_input, "{}: has no channels", path_);

@@ -3,7 +3,9 @@
 #include "dump/cure.h"
 #include "dump/dump.h"
 #include "dump/error.h"
+#include "dump/frame_numbers.h"
 #include "dump/text.h"
+#include "dump/texture_file.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -29,38 +31,97 @@ struct LeftOut {
     names.insert(name);
     if (names.size() > kNamed) names.erase(std::prev(names.end()));
   }
-  /// "a.txt, b.txt and 3 more".
-  [[nodiscard]] std::string text() const {
-    const std::string list = listed(names, [](const std::string& name) { return name; });
-    return count > names.size() ? fmt::format("{} and {} more", list, count - names.size()) : list;
-  }
 };
 
-/// Takes a directory's entry if it is a file that is read.
-void take_entry(const fs::directory_entry& entry, std::vector<std::string>& files,
-                LeftOut& left_out) {
+/// What a directory holds. Hidden files are not looked at.
+struct Contents {
+  std::vector<std::string> files;     ///< that are read
+  std::vector<std::string> sidecars;  ///< .json files, of raw files or not
+  LeftOut named_only;                 ///< is read if it is named
+  LeftOut others;
+};
+
+void take_entry(const fs::directory_entry& entry, const std::vector<Sequence>& known,
+                Contents& contents) {
   const std::string name = entry.path().filename().string();
+  if (name[0] == '.') return;
   const auto kind = image_kind(name);
   std::error_code error;
-  const bool folder = entry.is_directory(error);
+  if (entry.is_directory(error)) return contents.named_only.add(name + "/");
   // Files without an extension count as EXR only if the caller names them.
-  const bool image = kind && entry.path().has_extension() && !folder;
-  if (name[0] == '.' && !image) return;
-  const bool sidecar = entry.path().extension() == ".json";
-  if (image && is_written(*kind) && name[0] != '.') {
-    if (!entry.is_symlink(error) || fs::exists(entry.path(), error)) {
-      files.push_back(entry.path().string());
-    } else {
-      left_out.add(name + " (a link to nothing)");
-    }
-  } else if (!sidecar) {
-    left_out.add(folder ? name + "/" : name);
+  const bool image = kind && entry.path().has_extension();
+  const bool leads_nowhere = entry.is_symlink(error) && !fs::exists(entry.path(), error);
+  if (image && leads_nowhere) return contents.others.add(name + " (a link to nothing)");
+  const auto is_known = [&] {
+    const ParsedName parsed = parse_name(name);
+    const std::string stem = entry.path().stem().string();
+    return std::ranges::any_of(known, [&](const Sequence& one) {
+      return one.name == (one.names.digits == 0 ? stem : parsed.name);
+    });
+  };
+  if (image && (is_written(*kind) || is_known())) {
+    contents.files.push_back(entry.path().string());
+  } else if (image) {
+    contents.named_only.add(name);
+  } else if (entry.path().extension() == ".json") {
+    contents.sidecars.push_back(entry.path().string());
+  } else {
+    contents.others.add(name);
   }
+}
+
+/// The sidecars that describe raw files.
+std::set<std::string> sidecars_of(const std::vector<std::string>& files) {
+  std::set<std::string> sidecars;
+  for (const std::string& path : files) {
+    if (image_kind(path) != ImageKind::raw) continue;
+    std::string own = raw_sidecar_path(path, false);
+    std::error_code error;
+    sidecars.insert(fs::exists(own, error) ? std::move(own) : raw_sidecar_path(path, true));
+  }
+  return sidecars;
+}
+
+Contents contents_of(const std::string& path, const std::vector<Sequence>& known) {
+  Contents contents;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(path, error)) {
+    take_entry(entry, known, contents);
+    if (contents.files.size() <= kMaxFiles) continue;
+    fail(Exit::bad_input, "{}: has more than {} dumps; {}", path, kMaxFiles,
+         to_cure(Cure::fewer_files));
+  }
+  if (error) fail(Exit::io, "{}: cannot be listed: {}", path, error.message());
+  std::ranges::sort(contents.files);
+  const auto described = sidecars_of(contents.files);
+  for (const std::string& sidecar : contents.sidecars) {
+    if (!described.contains(sidecar)) {
+      contents.others.add(fs::path(sidecar).filename().string());
+    }
+  }
+  return contents;
+}
+
+/// "b.png and sub/; name them to take them", and what is no dump.
+std::string left_out_text(const Contents& contents) {
+  std::string text;
+  if (contents.named_only.count > 0) {
+    text = fmt::format("{}; {}", listed(contents.named_only.names, contents.named_only.count),
+                       to_cure(Cure::name_others));
+  }
+  if (contents.others.count > 0) {
+    text += fmt::format("{}{}, which {} no dump{}", text.empty() ? "" : "; and ",
+                        listed(contents.others.names, contents.others.count),
+                        contents.others.count == 1 ? "is" : "are",
+                        contents.others.count == 1 ? "" : "s");
+  }
+  return text;
 }
 
 }  // namespace
 
 std::vector<std::string> expand_directories(const std::vector<std::string>& paths,
+                                            const std::vector<Sequence>& known,
                                             std::vector<std::string>* remarks) {
   std::vector<std::string> files;
   for (const std::string& path : paths) {
@@ -69,27 +130,23 @@ std::vector<std::string> expand_directories(const std::vector<std::string>& path
       files.push_back(path);
       continue;
     }
-    const std::size_t first = files.size();
-    LeftOut left_out;
-    for (const auto& entry : fs::directory_iterator(path, error)) {
-      take_entry(entry, files, left_out);
-      if (files.size() - first <= kMaxFiles) continue;
-      fail(Exit::bad_input, "{}: has more than {} dumps; {}", path, kMaxFiles,
-           to_cure(Cure::fewer_files));
+    const Contents contents = contents_of(path, known);
+    const std::string left_out = left_out_text(contents);
+    if (contents.files.empty()) {
+      fail(Exit::bad_input, "{}: has no .exr, .dds, .ktx2, .raw or .bin files{}{}", path,
+           left_out.empty() ? "" : ", but ", left_out);
     }
-    if (error) fail(Exit::io, "{}: cannot be listed: {}", path, error.message());
-    if (files.size() == first) {
-      fail(Exit::bad_input, "{}: has no .exr, .dds, .ktx2, .raw or .bin files{}", path,
-           left_out.count > 0
-               ? fmt::format(", but {}; {}", left_out.text(), to_cure(Cure::name_others))
-               : "");
+    if (!left_out.empty() && remarks != nullptr) {
+      remarks->push_back(fmt::format("{}: leaves out {}", path, left_out));
     }
-    if (left_out.count > 0 && remarks != nullptr) {
-      remarks->push_back(
-          fmt::format("{}: leaves out {}; {}", path, left_out.text(), to_cure(Cure::name_others)));
-    }
-    std::sort(files.begin() + static_cast<std::ptrdiff_t>(first), files.end());
+    files.insert(files.end(), contents.files.begin(), contents.files.end());
   }
+  // Shells name sidecars as well, and a folder beside its files names these twice.
+  const auto sidecars = sidecars_of(files);
+  std::set<std::string> seen;
+  std::erase_if(files, [&](const std::string& path) {
+    return sidecars.contains(path) || !seen.insert(fs::path(path).lexically_normal()).second;
+  });
   return files;
 }
 

@@ -79,12 +79,48 @@ bool at_pattern(const ParsedName& parsed, const std::string& pattern) {
          matches(parsed.name + parsed.separator, std::string_view(pattern).substr(0, first));
 }
 
+/// The patterns of files whose numbers are frames'. Throws for one without a #, and in the end for
+/// one that no file has.
+class Patterns {
+ public:
+  explicit Patterns(const std::vector<std::string>& patterns)
+      : patterns_(patterns), found_(patterns.size()) {
+    for (const std::string& pattern : patterns) {
+      if (pattern.find('#') != std::string::npos) continue;
+      fail(Exit::usage, "--frames-from {}: has no # where the number is, as in \"irr_#\"", pattern);
+    }
+  }
+  bool take(const ParsedName& parsed) {
+    bool any = false;
+    for (std::size_t i = 0; i < patterns_.size(); ++i) {
+      if (!at_pattern(parsed, patterns_[i])) continue;
+      any = found_[i] = true;
+    }
+    return any;
+  }
+  void finish() const {
+    const auto missed = std::ranges::find(found_, false);
+    if (missed == found_.end()) return;
+    fail(Exit::usage,
+         "--frames-from \"{}\": no file has a number there; a frame's number is the last of a "
+         "name, before the extension",
+         patterns_[static_cast<std::size_t>(missed - found_.begin())]);
+  }
+
+ private:
+  const std::vector<std::string>& patterns_;
+  std::vector<bool> found_;
+};
+
 /// The known sequence that a file belongs to; null if there is none.
 const Sequence* known_of(const ParsedName& parsed, const std::vector<Sequence>& known) {
   const std::string stem = parsed.name + parsed.separator + parsed.number;
   for (const Sequence& one : known) {
     const FileNames& names = one.names;
-    if (names.extension != parsed.extension) continue;
+    const auto kind = image_kind("x." + parsed.extension);
+    // What is only read comes back as EXR.
+    const bool replaced = names.extension == "exr" && kind && !is_written(*kind);
+    if (names.extension != parsed.extension && !replaced) continue;
     if (names.digits == 0 && one.name == stem) return &one;
     if (names.digits > 0 && one.name == parsed.name && names.separator == parsed.separator &&
         !parsed.number.empty()) {
@@ -136,7 +172,7 @@ std::string why_no_frames(const std::vector<const Input*>& files, const NumberOp
   const bool named_so =
       any.separator.empty() && any.digits() < 4 && std::ranges::any_of(any.name, is_digit);
   if (named_so) return "their names have other numbers";
-  if (!padded && !options.allow_gaps && !is_run(files)) return "they are no run";
+  if (!padded && !options.allow_gaps && !is_run(files)) return "their numbers are not consecutive";
   if (!are_alike(files)) return kUnlike;
   return "";
 }
@@ -150,7 +186,7 @@ void note_guess(const std::vector<const Input*>& files, const std::string& why,
   if (why.empty()) {
     line += "their numbers are taken for those of frames; " + to_cure(Cure::stills);
   } else {
-    line += "taken for stills, since " + why;
+    line += "each is taken for a texture of its own, since " + why;
     if (why != kUnlike) {
       line += "; " + to_cure(Cure::frames_from, shell_word(any.name + any.separator + "#"),
                              is_run(files) ? "" : " --allow-gaps");
@@ -164,6 +200,7 @@ void note_guess(const std::vector<const Input*>& files, const std::string& why,
 void settle_numbers(std::vector<Input>& inputs, const NumberOptions& options,
                     std::vector<std::string>* remarks) {
   std::map<std::tuple<std::string, std::string, std::string>, std::vector<Input*>> groups;
+  Patterns patterns(options.patterns);
   for (Input& input : inputs) {
     ParsedName& parsed = input.parsed;
     if (parsed.number.empty()) continue;
@@ -171,12 +208,14 @@ void settle_numbers(std::vector<Input>& inputs, const NumberOptions& options,
       if (known->names.digits == 0) parsed.keep_number();
       continue;
     }
-    if (options.stills || !options.pattern.empty()) {
-      if (options.stills || !at_pattern(parsed, options.pattern)) parsed.keep_number();
+    if (patterns.take(parsed)) continue;
+    if (options.stills) {
+      parsed.keep_number();
       continue;
     }
     groups[{parsed.name, parsed.separator, parsed.extension}].push_back(&input);
   }
+  patterns.finish();
   std::map<std::int64_t, std::size_t> with_number;
   for (const auto& [key, files] : groups) {
     for (const Input* file : files) ++with_number[file->parsed.value()];

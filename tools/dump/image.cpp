@@ -152,6 +152,25 @@ DpxSizes read_dpx_sizes(const std::string& path) {
   return sizes;
 }
 
+/// Frames of an animated PNG, of which the first is read; 1 of any other.
+int png_frames(const std::string& path) {
+  constexpr int kMagic = 8, kChecksum = 4;
+  std::ifstream file(path, std::ios::binary);
+  file.seekg(kMagic);
+  for (std::array<unsigned char, 12> chunk{};
+       file.read(reinterpret_cast<char*>(chunk.data()), 12);) {
+    const auto word = [&](std::size_t at) {
+      return std::uint32_t{chunk[at]} << 24 | std::uint32_t{chunk[at + 1]} << 16 |
+             std::uint32_t{chunk[at + 2]} << 8 | chunk[at + 3];
+    };
+    const std::string_view type(reinterpret_cast<const char*>(&chunk[4]), 4);
+    if (type == "IDAT" || word(0) < 4) break;
+    if (type == "acTL") return static_cast<int>(std::min<std::uint32_t>(word(8), INT32_MAX));
+    file.seekg(std::streamoff{word(0)} - 4 + kChecksum, std::ios::cur);
+  }
+  return 1;
+}
+
 /// Checks a DPX file's size by its header, because OpenImageIO gives zeros for missing bytes.
 void require_complete_dpx(const ImageHead& image, const DpxSizes& sizes, const std::string& path) {
   const std::uint64_t samples = static_cast<std::uint64_t>(image.width) *
@@ -201,8 +220,9 @@ std::vector<Dump> read_image(const std::string& path, ImageKind kind, const Hint
   };
   lose_others(head.pages, "pages");
   lose_others(head.levels, "mip levels");
+  if (kind == ImageKind::png) lose_others(png_frames(path), "frames");
   dump.info.lost.push_back(
-      fmt::format("its metadata, and that it is {} (EXR comes back)", parser_of(kind)));
+      fmt::format("its metadata and that it is {} (decode writes EXR)", parser_of(kind)));
   const FormatInfo& format = *find_format(dump.info.desc.record.format);
   if (!dump.info.channels.exponent) {
     fail(Exit::bad_input, "{}: only EXR files can hold values that share an exponent", path);

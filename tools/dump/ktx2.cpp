@@ -225,8 +225,11 @@ TextureHead read_ktx2_head(TextureFile& file) {
   if (long_at(start, kSgdBytes) != 0)
     fault = "global data of supercompression, which only BasisLZ has";
   for (const StoredLevel& level : head.stored) {
-    if (level.bytes > file.size() || level.unpacked > kMaxImageBytes) {
+    if (level.bytes > kMaxImageBytes || level.unpacked > kMaxImageBytes) {
       fault = fmt::format("a level of {} bytes, {} unpacked", level.bytes, level.unpacked);
+    } else if (level.bytes > file.size()) {
+      fail(Exit::bad_input, "{}: is truncated: a level takes {} bytes, and it has {}", path,
+           level.bytes, file.size());
     }
     if (head.scheme == Scheme::none && level.unpacked != level.bytes) {
       fault = fmt::format("a level of {} bytes, {} unpacked, and no supercompression", level.bytes,

@@ -57,8 +57,7 @@ std::vector<std::uint32_t> numbers_of(const Json& json) {
 
 class Sidecar {
  public:
-  Sidecar(const std::string& path, const std::string& text)
-      : path_(path), json_(Json::parse(text, nullptr, false)) {
+  Sidecar(const std::string& path, const std::string& text) : path_(path), json_(parse(text)) {
     if (!json_.is_object()) fail(Exit::bad_input, "{}: is no JSON object", path_);
   }
 
@@ -81,6 +80,27 @@ class Sidecar {
   }
 
  private:
+  /// Throws for a member that stands twice, of which JSON keeps the last.
+  [[nodiscard]] Json parse(const std::string& text) const {
+    std::vector<std::set<std::string>> names;
+    const auto look = [&](int, Json::parse_event_t event, Json& json) {
+      if (event == Json::parse_event_t::object_start) names.emplace_back();
+      if (event == Json::parse_event_t::object_end) names.pop_back();
+      if (event == Json::parse_event_t::key &&
+          !names.back().insert(json.get<std::string>()).second) {
+        fail(Exit::bad_input, "{}: member \"{}\" stands twice", path_, json.get<std::string>());
+      }
+      return true;
+    };
+    try {
+      return Json::parse(text, look);
+    } catch (const Json::parse_error& error) {
+      const auto end = std::min(error.byte, text.size());
+      const auto line =
+          std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(end), '\n');
+      fail(Exit::bad_input, "{}: is no JSON from line {} on", path_, line + 1);
+    }
+  }
   void set_extent(TextureHead& head, const Json& value) {
     const auto sides = numbers_of(value);
     if (sides.size() < 2 || *std::ranges::min_element(sides) == 0) {
@@ -95,9 +115,12 @@ class Sidecar {
            kMaxAttributes);
     }
     for (const auto& [name, text] : value.items()) {
-      if (!text.is_string() || name.empty() || is_head_field(name)) {
-        fail(Exit::bad_input, "{}: attribute {} is no text that can be kept; write it in quotes",
-             path_, name);
+      if (name.empty()) fail(Exit::bad_input, "{}: an attribute has no name", path_);
+      if (is_head_field(name)) {
+        fail(Exit::bad_input, "{}: attribute {} has a name that has a meaning here", path_, name);
+      }
+      if (!text.is_string()) {
+        fail(Exit::bad_input, "{}: attribute {} is no text; write it in quotes", path_, name);
       }
       for (const Member& member : kMembers) {
         if (name == member.attribute) {
@@ -181,8 +204,8 @@ TextureHead read_raw_head(TextureFile& file, const Hints& hints) {
   if (!has_own && !has_shared) {
     const bool described = hints.format && hints.extent;
     if (!hints.desc && !described) {
-      fail(Exit::bad_input, "{}: has no sidecar {}{}, that describes it; {}", file.path(), own,
-           own == shared ? "" : fmt::format(", or {} for all frames", shared),
+      fail(Exit::bad_input, "{}: has no sidecar {}{} that describes it; {}", file.path(), own,
+           own == shared ? "" : fmt::format(" or {} (for all frames)", shared),
            to_cure(Cure::describe_raw));
     }
     head.texels = hints.desc ? texels_of(*hints.desc) : *hints.extent;

@@ -109,27 +109,12 @@ std::string FileNames::of(const std::string& name, std::uint64_t frame) const {
 std::vector<Sequence> group_sequences(const std::vector<std::string>& paths,
                                       const NumberOptions& options,
                                       std::vector<std::string>* remarks) {
-  if (!options.pattern.empty() && options.pattern.find('#') == std::string::npos) {
-    fail(Exit::usage, "--frames-from {}: has no # where the number is, as in \"irr_#\"",
-         options.pattern);
-  }
-  if (!options.pattern.empty() && options.stills) {
-    fail(Exit::usage, "--stills and --frames-from exclude each other");
-  }
   std::vector<Input> inputs;
-  for (const std::string& path : expand_directories(paths, remarks)) {
+  for (const std::string& path : expand_directories(paths, options.known, remarks)) {
     (void)require_image_kind(path);
     inputs.push_back({path, parse_name(path)});
   }
   settle_numbers(inputs, options, remarks);
-  const auto is_numbered = [](const Input& input) { return !input.parsed.number.empty(); };
-  if (!options.pattern.empty() && std::ranges::none_of(inputs, is_numbered)) {
-    fail(
-        Exit::usage,
-        "--frames-from \"{}\": no file has a number there; a frame's number is the last of a name, "
-        "before the extension",
-        options.pattern);
-  }
   std::int64_t base = options.known.empty() ? 0 : options.known.front().names.base;
   for (const Input& input : inputs) {
     if (options.known.empty()) base = std::min(base, input.parsed.value());

@@ -41,10 +41,11 @@ struct Sequence {
 
 /// How numbers in names of files are read.
 struct NumberOptions {
-  bool allow_gaps = false;   ///< missing frames are no error
-  Cure cure = Cure::gaps;    ///< of missing ones
-  bool stills = false;       ///< no number is a frame's
-  std::string pattern = {};  ///< if not empty, only numbers at its # are: "irr_#", "*.#.exr"
+  bool allow_gaps = false;  ///< missing frames are no error
+  Cure cure = Cure::gaps;   ///< of missing ones
+  bool stills = false;      ///< no number is a frame's, but those at patterns
+  /// Numbers at their # are frames': "irr_#", "*.#.exr".
+  std::vector<std::string> patterns = {};
   /// Names that are known, as those of a container: their files are read as these are.
   std::vector<Sequence> known = {};
 };

@@ -38,6 +38,13 @@ template <typename Range, typename TextOf>
   return list;
 }
 
+/// "a, b and 3 more": the first of `count` names.
+template <typename Range>
+[[nodiscard]] std::string listed(const Range& first, std::size_t count) {
+  const std::string list = listed(first, std::identity{});
+  return count > first.size() ? fmt::format("{} and {} more", list, count - first.size()) : list;
+}
+
 /// Writes text unchanged. output_error() keeps the reason of the first failure on standard output.
 void write_text(std::FILE* stream, std::string_view text);
 /// Flushes; output_error() also keeps the reason of a failure.

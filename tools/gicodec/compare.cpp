@@ -65,6 +65,15 @@ NumberOptions with_gaps(NumberOptions numbers) {
   return numbers;
 }
 
+/// The file, or one of its name whose kind is only read, so that decode gives EXR for it.
+std::string source_of(fs::path file) {
+  for (const char* ending : {".exr", ".png", ".tif", ".tiff", ".dpx"}) {
+    const fs::path other = fs::path(file).replace_extension(ending);
+    if (fs::exists(other)) return other.string();
+  }
+  return file.string();
+}
+
 /// Pairs files of the same name, and else of the same texture and frame, because folders may hold
 /// files of different kinds.
 std::vector<Pair> pairs_of_folders(const std::string& left, const std::vector<Sequence>& lefts,
@@ -88,8 +97,8 @@ std::vector<Pair> pairs_of_folders(const std::string& left, const std::vector<Se
   }
   std::vector<Pair> all;
   for (auto& [key, pair] : pairs) {
-    if (pair.left.empty()) pair.left = (fs::path(left) / name_of(pair.right)).string();
-    if (pair.right.empty()) pair.right = (fs::path(right) / name_of(pair.left)).string();
+    if (pair.left.empty()) pair.left = source_of(fs::path(left) / name_of(pair.right));
+    if (pair.right.empty()) pair.right = source_of(fs::path(right) / name_of(pair.left));
     all.push_back(pair);
   }
   std::ranges::sort(all, {}, &Pair::left);
@@ -122,10 +131,17 @@ Compared compare_images(const Pair& pair, const Dump& left, const Dump& right, b
 /// One for each image of the files. Adds to `left_out` what dumps do not keep of them.
 std::vector<Compared> compare_pair(const Pair& pair, const CompareOptions& options,
                                    std::vector<std::string>& left_out) {
-  const Hints hints =
+  Hints hints =
       settle_formats(std::vector{pair.left, pair.right}, hints_for(options.geometry, pair.texture));
-  const std::vector<Dump> left = read_dumps(pair.left, hints),
-                          right = read_dumps(pair.right, hints);
+  std::vector<Dump> left = read_dumps(pair.left, hints), right = read_dumps(pair.right, hints);
+  const auto fits = [](const Dump& a, const Dump& b) {
+    return a.info.desc.record == b.info.desc.record || !(a.info.guessed || b.info.guessed);
+  };
+  if (!std::ranges::equal(left, right, fits)) {
+    hints.plain = true;  // One file says that its values are no codes.
+    left = read_dumps(pair.left, hints);
+    right = read_dumps(pair.right, hints);
+  }
   const auto same_image = [](const Dump& a, const Dump& b) { return a.info.image == b.info.image; };
   if (!std::ranges::equal(left, right, same_image)) {
     const auto names = [](const std::vector<Dump>& images) {
@@ -135,7 +151,13 @@ std::vector<Compared> compare_pair(const Pair& pair, const CompareOptions& optio
          pair.right, names(left), names(right));
   }
   // Files of different kinds have different attributes even for the same texels.
-  const bool headers = !options.texels_only && image_kind(pair.left) == image_kind(pair.right);
+  const bool one_kind = image_kind(pair.left) == image_kind(pair.right);
+  const bool headers = !options.texels_only && one_kind;
+  if (!options.texels_only && !one_kind) {
+    left_out.push_back(fmt::format(
+        "{} and {} are files of two kinds: their attributes and channels are not compared",
+        pair.left, pair.right));
+  }
   for (const auto& [path, images] :
        {std::pair(&pair.left, &left), std::pair(&pair.right, &right)}) {
     for (const Dump& image : *images) {

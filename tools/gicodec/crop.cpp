@@ -5,8 +5,10 @@
 #include "dump/cure.h"
 #include "dump/dump.h"
 #include "dump/file.h"
+#include "dump/geometry_attributes.h"
 #include "dump/sequence.h"
 #include "dump/text.h"
+#include "dump/texture_file.h"
 #include "geometry_flags.h"
 
 #include <algorithm>
@@ -20,8 +22,8 @@ namespace {
 constexpr const char* kFooter =
     "Writes dumps of the same names that hold only the probes, or blocks, of a box of the grid,\n"
     "texels and attributes as they are, but gicodec:origin, which goes to the first one of the\n"
-    "box, and the other gicodec: ones, which say its size also where the input has none. Files\n"
-    "that are there already are kept unless --overwrite is given, the inputs always.\n"
+    "box, and those that say its size. A block is what --block says, 8x8 texels unless given.\n"
+    "Files that are there already are kept unless --overwrite is given, the inputs always.\n"
     "\n"
     "Examples:\n"
     "  gicodec crop --origin 4,0,8 --size 8x8x8 -o small/ dumps/villa/*.exr\n"
@@ -64,25 +66,41 @@ Grid cropped_records(const TextureDesc& desc, const Grid& origin, const Grid& si
           side(desc.records.z, origin.z, size.z, desc.block.z)};
 }
 
-Dump crop_dump(const Dump& from, const Grid& origin, const Grid& size, const std::string& path) {
-  const TextureDesc& old_desc = from.info.desc;
+/// Throws unless an image has all blocks of the box.
+void require_box(const TextureDesc& desc, const Grid& origin, const Grid& size,
+                 const std::string& path) {
   const auto fits = [](std::uint32_t start, std::uint32_t count, std::uint32_t all) {
     return std::uint64_t{start} + count <= all;
   };
-  if (!fits(origin.x, size.x, old_desc.grid.x) || !fits(origin.y, size.y, old_desc.grid.y) ||
-      !fits(origin.z, size.z, old_desc.grid.z)) {
+  if (!fits(origin.x, size.x, desc.grid.x) || !fits(origin.y, size.y, desc.grid.y) ||
+      !fits(origin.z, size.z, desc.grid.z)) {
     fail(Exit::usage, "{}: {} {}s from ({}, {}, {}) on do not fit its grid {}", path,
-         to_string(size), block_word(old_desc), origin.x, origin.y, origin.z,
-         to_string(old_desc.grid));
+         to_string(size), block_word(desc), origin.x, origin.y, origin.z, to_string(desc.grid));
   }
-  if (old_desc.space == Space::pool) {
+  if (desc.space == Space::pool) {
     fail(Exit::bad_input, "{}: holds a pool, whose blocks are no box of anything", path);
   }
+}
+
+/// True if attributes say what a file's texture is, or have to: a file of another kind did.
+bool is_described(const DumpInfo& info, const std::string& path) {
+  return is_probes(info.desc) || !is_written(require_image_kind(path)) ||
+         find_attribute(info.attributes, kFormat) != nullptr;
+}
+
+Dump crop_dump(const Dump& from, const Grid& origin, const Grid& size, const std::string& path) {
+  const TextureDesc& old_desc = from.info.desc;
+  require_box(old_desc, origin, size, path);
   Dump to;
   to.info = from.info;
   to.info.desc.grid = size;
   to.info.desc.records = cropped_records(old_desc, origin, size);
-  if (to.info.head) describe(to.info.attributes, to.info.desc);
+  if (to.info.head && is_described(from.info, path)) describe(to.info.attributes, to.info.desc);
+  // A file that flags described gets a sidecar, which says its size.
+  if (const auto* sidecar = find_attribute(to.info.attributes, kRawSidecar);
+      sidecar != nullptr && sidecar->value == "none") {
+    std::erase(to.info.attributes, *sidecar);
+  }
   move_origin(to.info.attributes, origin);
   (void)drop_size_fields(to.info.attributes);
   const TextureDesc& desc = to.info.desc;
@@ -122,8 +140,10 @@ void check_outputs(const CropOptions& options, const std::vector<Sequence>& sequ
   }
 }
 
-/// What cropped files lack of a file, in words; throws if its images are not of one grid.
-std::string not_kept(const std::vector<DumpInfo>& images, const std::string& path) {
+/// What cropped files lack of a file, in words; throws if its images are not of one grid, or have
+/// no such box.
+std::string not_kept(const std::vector<DumpInfo>& images, const Grid& origin, const Grid& size,
+                     const std::string& path) {
   std::vector<std::string> lost;
   for (const DumpInfo& image : images) {
     if (image.desc.grid != images.front().desc.grid || image.place.level > 0) {
@@ -131,6 +151,7 @@ std::string not_kept(const std::vector<DumpInfo>& images, const std::string& pat
            "{}: holds images of several sizes ({}), which are no box of one grid; {}", path,
            listed(images, image_words), to_cure(Cure::raw_files));
     }
+    require_box(image.desc, origin, size, path);
     lost.insert(lost.end(), image.lost.begin(), image.lost.end());
     Attributes attributes = image.attributes;
     for (std::string& name : drop_size_fields(attributes)) lost.push_back("attribute " + name);
@@ -164,7 +185,7 @@ Exit crop(const CropOptions& options, const Cli& cli) {
     for (const FrameFile& file : sequence.frames) paths.push_back(file.path);
     hints.push_back(settle_formats(paths, hints_for(options.geometry, sequence.name)));
     for (const std::string& path : paths) {
-      const std::string lost = not_kept(read_dump_infos(path, hints.back()), path);
+      const std::string lost = not_kept(read_dump_infos(path, hints.back()), *origin, *size, path);
       if (!lost.empty() && !cli.quiet) remark(fmt::format("{}: {} not kept", path, lost));
     }
   }

@@ -205,6 +205,8 @@ Exit decode(const DecodeOptions& options, const Cli& cli) {
       remark(fmt::format("texture {}: {} files do not have its attributes {}", texture.name,
                          texture.names.extension, texture.unsaid));
     }
+    if (!texture.unlike.empty())
+      remark(fmt::format("texture {}: {}", texture.name, texture.unlike));
     if (!texture.inactive.empty()) {
       remark(fmt::format("texture {}: {} inactive probes were not stored and are zero",
                          texture.name, texture.inactive.size()));

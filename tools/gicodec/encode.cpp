@@ -149,6 +149,7 @@ std::vector<Lane> make_lanes(const EncodeOptions& options, const std::vector<Seq
   ProbeSet inactive;
   if (!options.inactive.empty()) inactive = read_probe_set(options.inactive);
   bool any_lossy = false;
+  std::vector<std::string> fell_back;
   std::vector<Lane> lanes;
   auto inputs = inspect_all(options.geometry, sequences);
   if (inputs.size() > DecodeLimits{}.max_textures) {
@@ -161,11 +162,7 @@ std::vector<Lane> make_lanes(const EncodeOptions& options, const std::vector<Seq
     require_size(stored, sequence->frames.front().path);
     const bool leaves_out = !inactive.empty() && !roles.states[lanes.size()];
     if (leaves_out) stored.inactive = inactive;
-    if (stored.info.fell_back && !silent) {
-      remark(fmt::format(
-          "texture {}: is kept as {}, since not all of its values are n/1023 (10-bit codes)",
-          stored.name, record_text(stored.info.desc.record)));
-    }
+    if (stored.info.fell_back) fell_back.push_back(stored.name);
     if (!stored.dropped.empty() && !silent) {
       remark(fmt::format("{}: {} not kept", stored.dropped_in, stored.dropped));
     }
@@ -201,6 +198,13 @@ std::vector<Lane> make_lanes(const EncodeOptions& options, const std::vector<Seq
                      static_cast<std::uint8_t>(lanes.size()), max_error, options.threads);
     lanes.push_back({*sequence, std::move(stored), std::move(encoder), 0, {}, {}, {}});
     if (leaves_out) set_inactive(lanes.back(), inactive, options.inactive);
+  }
+  if (!fell_back.empty() && !silent) {
+    remark(
+        fmt::format("kept as floats, since not all of their values are n/1023, as those of "
+                    "10-bit colour are: {}",
+                    listed(std::span(fell_back).first(std::min<std::size_t>(4, fell_back.size())),
+                           fell_back.size())));
   }
   if (!options.backend.lossy.empty() && !any_lossy) {
     fail(Exit::usage, "--lossy has nothing to do: no texture holds 10-bit colour");
@@ -313,7 +317,7 @@ Exit encode(const EncodeOptions& options, const Cli& cli) {
   for (const std::string& line : remarks) {
     if (!silent) remark(line);
   }
-  const bool told = options.geometry.numbers.stills || !options.geometry.numbers.pattern.empty();
+  const bool told = options.geometry.numbers.stills || !options.geometry.numbers.patterns.empty();
   if (const auto question = question_of(sequences); !question.empty() && !silent && !told) {
     remark(question);
   }

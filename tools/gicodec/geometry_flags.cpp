@@ -2,6 +2,7 @@
 
 #include "common/named_value.h"
 #include "dump/error.h"
+#include "dump/text.h"
 
 #include <gicodec/engines.h>
 
@@ -43,6 +44,13 @@ std::optional<Grid> parse_block(std::string_view text) {
   const auto sides = grid_from_string(text);
   if (!sides || std::max({sides->x, sides->y, sides->z}) > kMaxBlockSide) return std::nullopt;
   return sides;
+}
+
+/// Two sides, or three.
+std::optional<Grid> parse_extent(std::string_view text) {
+  const auto separator = text.find_first_of("x,");
+  const bool flat = separator != text.npos && separator == text.find_last_of("x,");
+  return grid_from_string(flat ? fmt::format("{}{}1", text, text[separator]) : std::string(text));
 }
 
 std::optional<Tiling> parse_tiling(std::string_view text) {
@@ -161,7 +169,7 @@ void add_geometry_flags(Command& command, GeometryFlags& flags) {
       "Texels of such a texture; for a 3D texture or an array in an EXR, whose slices stand one "
       "below "
       "the other",
-      "[NAME=]XxYxZ");
+      "[NAME=]XxY[xZ]");
   add("--vk-format", flags.format,
       ("Texel format: " + format_names() + "; default: from the channels").c_str(),
       "[NAME=]FORMAT");
@@ -170,15 +178,31 @@ void add_geometry_flags(Command& command, GeometryFlags& flags) {
       "[NAME=]R=CHANNEL,...");
 }
 
+std::string flags_text(const GeometryFlags& flags) {
+  std::string text;
+  for (const auto& [flag, values] :
+       {std::pair("--grid", &flags.grid), std::pair("--core", &flags.core),
+        std::pair("--guard-band", &flags.guard_band), std::pair("--tiling", &flags.tiling),
+        std::pair("--block", &flags.block), std::pair("--extent", &flags.extent),
+        std::pair("--vk-format", &flags.format), std::pair("--channels", &flags.channels)}) {
+    for (const std::string& value : *values) text += fmt::format(" {} {}", flag, shell_word(value));
+  }
+  return text + (flags.layout.empty() ? "" : " --layout " + flags.layout);
+}
+
 void add_number_flags(Command& command, NumberOptions& numbers) {
   const std::string group =
       "Which numbers in names of files are frames; default: by looking at the files";
-  command.add_flag("--stills", numbers.stills, "None: each file is a texture")->group(group);
   command
-      .add_option("--frames-from", numbers.pattern,
-                  "Those where the pattern has #; * is any text, e.g. \"irr_#\"")
-      ->type_name("PATTERN")
+      .add_flag("--stills", numbers.stills, "No other number is: each file is a texture of its own")
       ->group(group);
+  command
+      .add_option("--frames-from", numbers.patterns,
+                  "Those where the pattern has #; * is any text, e.g. \"irr_#\"; may be repeated")
+      ->type_name("PATTERN")
+      ->group(group)
+      ->expected(1)
+      ->take_all();
 }
 
 std::optional<VolumeDesc> layout_volume(const GeometryFlags& flags) {
@@ -230,9 +254,8 @@ Hints hints_for(const GeometryFlags& flags, const std::string& texture) {
   hints.block = value_for(
       flags.block, texture, "--block",
       fmt::format("texels in x, y and z of 1 to {}, such as 8x8x1", kMaxBlockSide), parse_block);
-  hints.extent =
-      value_for(flags.extent, texture, "--extent", "texels in x, y and z such as 64x64x32",
-                [](std::string_view text) { return grid_from_string(text); });
+  hints.extent = value_for(flags.extent, texture, "--extent", "texels such as 64x32 or 64x64x32",
+                           parse_extent);
   hints.format = value_for(flags.format, texture, "--vk-format", format_names(), parse_format);
   hints.channels = channels_for(flags, texture);
   return hints;

@@ -22,6 +22,8 @@ struct GeometryFlags {
 };
 
 void add_geometry_flags(Command& command, GeometryFlags& flags);
+/// The flags as a command line has them: " --grid 4x4x4".
+[[nodiscard]] std::string flags_text(const GeometryFlags& flags);
 /// --stills and --frames-from.
 void add_number_flags(Command& command, NumberOptions& numbers);
 /// The flags of a texture: NAME=VALUE overrides VALUE, later flags override earlier ones. Throws

@@ -2,6 +2,7 @@
 #include "common/cli.h"
 #include "common/volume_words.h"
 #include "container_report.h"
+#include "geometry_flags.h"
 #include "info_dump.h"
 
 #include <nlohmann/json.hpp>
@@ -38,6 +39,7 @@ struct InfoOptions {
   bool verbose = false;
   std::optional<double> fps;
   bool allow_incomplete = false;
+  GeometryFlags geometry;
 };
 
 void add_packet(const ContainerPacket& packet, const InfoOptions& options, LookBudget& budget,
@@ -90,7 +92,7 @@ Totals totals_of(const ContainerInput& input, const std::vector<TextureReport>& 
 
 Exit info(const InfoOptions& options, const Cli& cli) {
   if (is_dump(options.input)) {
-    print_dump(options.input, options.format == "json");
+    print_dump(options.input, options.geometry, options.format == "json");
     return Exit::ok;
   }
   ContainerInput input(options.input);
@@ -155,6 +157,7 @@ void add_info(Cli& cli) {
       ->type_name("N");
   add_allow_incomplete(*command, options->allow_incomplete);
   add_output_format(*command, options->format);
+  add_geometry_flags(*command, options->geometry);
   command->callback([&cli, options] { cli.run = [&cli, options] { return info(*options, cli); }; });
 }
 

@@ -14,9 +14,15 @@
 namespace gicodec::tools {
 namespace {
 
-std::string command_for(const std::string& path) {
+std::string command_for(const std::string& path, const GeometryFlags& flags) {
   const std::string stem = std::filesystem::path(path).stem().string();
-  return fmt::format("gicodec encode -o {} {}", shell_word(stem + ".gic"), shell_word(path));
+  return fmt::format("gicodec encode -o {} {}{}", shell_word(stem + ".gic"), shell_word(path),
+                     flags_text(flags));
+}
+
+/// Bytes of a value, also where it is told in hexadecimal digits.
+std::size_t bytes_of(const std::string& value) {
+  return value.starts_with("0x") ? value.size() / 2 - 1 : value.size();
 }
 
 /// A number of a compression as its name.
@@ -35,8 +41,10 @@ bool is_dump(const std::string& path) {
          image_kind(path).has_value();
 }
 
-void print_dump(const std::string& path, bool json) {
-  const Hints hints = settle_formats({&path, 1}, {});
+void print_dump(const std::string& path, const GeometryFlags& flags, bool json) {
+  const auto sequences = group_sequences({path});
+  check_names(flags, sequences);
+  const Hints hints = settle_formats({&path, 1}, hints_for(flags, sequences.front().name));
   const std::vector<DumpInfo> images = read_dump_infos(path, hints);
   if (json) {
     nlohmann::ordered_json all = {{"dump", path}, {"images", nlohmann::ordered_json::array()}};
@@ -52,7 +60,7 @@ void print_dump(const std::string& path, bool json) {
       one["not_kept"] = image.lost;
       all["images"].push_back(std::move(one));
     }
-    all["command"] = command_for(path);
+    all["command"] = command_for(path, flags);
     print_json(all);
     return;
   }
@@ -67,10 +75,10 @@ void print_dump(const std::string& path, bool json) {
       constexpr std::size_t kShown = 60;
       const std::string value = value_text(attribute);
       print("    {}: {}{}\n", attribute.name, value.substr(0, kShown),
-            value.size() > kShown ? fmt::format("... ({} bytes)", value.size()) : "");
+            value.size() > kShown ? fmt::format("... ({} bytes)", bytes_of(value)) : "");
     }
   }
-  print("{} packs it\n", command_for(path));
+  print("to pack it: {}\n", command_for(path, flags));
 }
 
 }  // namespace gicodec::tools

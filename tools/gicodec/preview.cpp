@@ -20,11 +20,12 @@ namespace gicodec::tools {
 namespace {
 
 constexpr const char* kFooter =
-    "Colour is decoded (integer codes: to the power of 5, as irradiance is stored), exposed so "
+    "Colour is decoded (10-bit codes: to the power of 5, as irradiance is stored), exposed so "
     "that\n"
-    "its logarithmic mean is middle grey, tone-mapped by x / (1 + x) and written as sRGB. "
-    "Textures\n"
-    "of one or two floating-point channels are distances: grey, the farthest finite one is white.\n"
+    "its logarithmic mean is middle grey, tone-mapped by x / (1 + x) and written as sRGB. Colour\n"
+    "of 8 or 16 bits, pictures already, stays as it is unless --gamma or --exposure is given.\n"
+    "Textures of one or two floating-point channels are distances: grey, the farthest finite one "
+    "is white.\n"
     "Records that are no format of Vulkan show their first three components as shares of their\n"
     "range, their blocks side by side.\n"
     "A file that is there already is kept unless --overwrite is given.\n"
@@ -155,7 +156,7 @@ Exit preview(const PreviewOptions& options, const Cli& cli) {
   const Loaded loaded = load(options, cli.quiet);
   check_interrupt();
   write_preview(options.output, loaded.dump, options.tuning, overwrite_if(options.overwrite));
-  if (!cli.quiet) remark(fmt::format("{}: {} written", options.output, loaded.what));
+  if (!cli.quiet) remark(fmt::format("{}: shows {}", options.output, loaded.what));
   return Exit::ok;
 }
 
@@ -189,7 +190,7 @@ void add_preview(Cli& cli) {
       ->type_name("EV");
   command
       ->add_option("--gamma", options->tuning.gamma,
-                   "Colour: power that decodes it; default: 5 for integer codes, else 1")
+                   "Colour: power that decodes it; default: 5 for 10-bit codes, else 1")
       ->allow(in_range(0.1, 10.0))
       ->type_name("G");
   command->add_option("--max-distance", options->tuning.max_distance, "Distance that is white")
