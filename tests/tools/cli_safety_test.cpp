@@ -74,8 +74,12 @@ TEST_F(CliSafety, DecodeKeepsWhatIsNoFile) {
   const std::string file = fs::path(dumps_[0]).filename(), path = "out/" + file;
   fs::create_directories(program_.path("out"));
   fs::create_symlink("nowhere", program_.path(path));
-  expect_refused(Exit::io, {"decode", "y.gic", "-o", "out"}, {file, "--overwrite"});
+  expect_refused(Exit::io, {"decode", "y.gic", "-o", "out"}, {file, "a link to nothing"});
   EXPECT_TRUE(fs::is_symlink(program_.path(path)));
+  fs::remove(program_.path(path));
+  // What a link leads to may be an original.
+  fs::create_symlink("../in/" + file, program_.path(path));
+  expect_refused(Exit::io, {"decode", "y.gic", "-o", "out", "--overwrite"}, {file, "a link"});
   fs::remove(program_.path(path));
   ASSERT_EQ(mkfifo(program_.path(path).c_str(), 0600), 0);
   expect_refused(Exit::io, {"decode", "y.gic", "-o", "out"}, {"in the way", "no regular file"});

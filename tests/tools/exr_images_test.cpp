@@ -4,11 +4,13 @@
 #include "tools/dump_support.h"
 
 #include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFloatAttribute.h>
 #include <OpenEXR/ImfFloatVectorAttribute.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIntAttribute.h>
 #include <OpenEXR/ImfMultiPartOutputFile.h>
+#include <OpenEXR/ImfOpaqueAttribute.h>
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfOutputPart.h>
 #include <OpenEXR/ImfPartType.h>
@@ -259,12 +261,17 @@ TEST_F(ExrImages, AttributesOfEveryName) {
   header.insert("chunkCount", Imf::IntAttribute(1));
   header.insert("type", Imf::StringAttribute(Imf::SCANLINEIMAGE));
   header.insert("weights", Imf::FloatVectorAttribute({1, 2, 3}));
+  header.insert("dwaCompressionLevel", Imf::FloatAttribute(45));
+  header.insert("spaced", Imf::OpaqueAttribute("my type"));
   header.insert("gr\xF6\xDF", Imf::StringAttribute("\xFF"));
   header.setPreviewImage(Imf::PreviewImage(2, 1));
   header.lineOrder() = Imf::DECREASING_Y;
   header.compression() = Imf::PIZ_COMPRESSION;
   write_lines(header, channels);
   EXPECT_EQ(images(), Words{" 13x10 R16G16B16A16_SFLOAT"});
+  // The type is a word of a container's metadata.
+  const Dump dump = read_dump(path_, plain());
+  EXPECT_EQ(find_attribute(dump.info.attributes, "spaced")->type, "0x6d792074797065");
 }
 
 TEST_F(ExrImages, WhatIsLostIsNamed) {
@@ -296,6 +303,7 @@ TEST_F(ExrImages, TableOfPlacesIsMissing) {
   std::fill_n(table, 8 * 10, std::byte{0});
   write_bytes(path_, bytes);
   EXPECT_EQ(read_dump(path_, plain()).texels, whole.texels);
+  EXPECT_TRUE(settle_formats({&path_, 1}, {}).plain);
   bytes.resize(bytes.size() - 10);
   write_bytes(path_, bytes);
   EXPECT_TRUE(read_error(path_, plain()));

@@ -137,6 +137,16 @@ TEST(File, WhatAKilledProgramLeftStays) {
   EXPECT_FALSE(fs::exists(left));
 }
 
+// What is replaced hands on its protection.
+TEST(File, ModesStay) {
+  const TemporaryDirectory directory;
+  const std::string path = directory.path("x");
+  write_bytes(path, std::as_bytes(std::span("old")));
+  fs::permissions(path, fs::perms::owner_read | fs::perms::owner_write);
+  write_file(path, {}, Existing::replace);
+  EXPECT_EQ(fs::status(path).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+}
+
 // A partial file that another one has taken the place of is not its own any more.
 TEST(File, PartialFilesOfOthersStay) {
   const TemporaryDirectory directory;

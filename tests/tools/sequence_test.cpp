@@ -193,23 +193,25 @@ TEST(Sequence, NumbersThatAreNoFrames) {
 
 TEST(Sequence, FilesOfOtherShapesAreStills) {
   const TemporaryDirectory directory;
-  std::vector<std::string> paths, remarks;
+  std::vector<std::string> paths;
+  SequenceRemarks remarks;
   for (const std::uint32_t side : {4U, 5U, 6U}) {
     const Dump dump = random_dump(map_texture(Format::R16_SFLOAT, {side, 4, 1}, {8, 8, 1}), side);
     paths.push_back(directory.path(fmt::format("a_{}.exr", side)));
     write_dump(paths.back(), dump.info, dump.texels);
   }
   EXPECT_EQ(group_sequences(paths, {}, &remarks).size(), 3U);
-  ASSERT_EQ(remarks.size(), 1U);
-  EXPECT_NE(remarks[0].find("taken for a texture of its own, since their shapes or formats differ"),
+  ASSERT_EQ(remarks.guesses.size(), 1U);
+  EXPECT_NE(remarks.guesses[0].find(
+                "taken for a texture of its own, since their shapes or formats differ"),
             std::string::npos)
-      << remarks[0];
-  remarks.clear();
+      << remarks.guesses[0];
+  remarks.guesses.clear();
   const Dump same = read_dump(paths[0]);
   for (const std::string& path : paths) write_dump(path, same.info, same.texels, Existing::replace);
   EXPECT_EQ(group_sequences(paths, {}, &remarks).size(), 1U);
-  ASSERT_EQ(remarks.size(), 1U);
-  EXPECT_NE(remarks[0].find("taken for those of frames; --stills"), std::string::npos);
+  ASSERT_EQ(remarks.guesses.size(), 1U);
+  EXPECT_NE(remarks.guesses[0].find("taken for those of frames; --stills"), std::string::npos);
 }
 
 // Patterns of many stars take no longer than others.
@@ -225,12 +227,12 @@ TEST(Sequence, LinksToNothingAreLeftOut) {
   const TemporaryDirectory directory;
   std::ofstream(directory.path("a.exr")) << "x";
   std::filesystem::create_symlink("nowhere", directory.path("b.exr"));
-  std::vector<std::string> remarks;
+  SequenceRemarks remarks;
   EXPECT_EQ(group_sequences({directory.path("")}, {}, &remarks).size(), 1U);
-  ASSERT_EQ(remarks.size(), 1U);
-  EXPECT_NE(remarks[0].find("leaves out b.exr (a link to nothing), which is no dump"),
+  ASSERT_EQ(remarks.left_out.size(), 1U);
+  EXPECT_NE(remarks.left_out[0].find("leaves out b.exr (a link to nothing), which is no dump"),
             std::string::npos)
-      << remarks[0];
+      << remarks.left_out[0];
 }
 
 TEST(Sequence, Directories) {

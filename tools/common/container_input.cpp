@@ -248,10 +248,17 @@ void ContainerInput::follow(std::size_t texture, std::span<std::byte> texels) co
 void ContainerInput::require_memory(std::uint64_t bytes, const std::string& where) const {
   const std::uint64_t wanted = player_->memory() + bytes;
   if (wanted <= decoding_.memory << 20) return;
+  // What comes after this needs memory too: decoders take a few times their textures.
+  constexpr std::uint64_t kTimes = 8;
+  std::uint64_t all = 0;
+  for (const TextureEntry& texture : description().textures) {
+    if (is_known(texture)) all += kTimes * texture_bytes(texture.desc);
+  }
+  const std::uint64_t enough = std::max(wanted, std::min(all, DecodeLimits{}.max_total_bytes));
   fail(Exit::bad_input,
        "{}: decoding takes {} MiB with the textures before it, and {} are allowed{}", where,
        mebibytes(wanted), decoding_.memory,
-       decoding_.memory_flag ? "; " + to_cure(Cure::more_memory, mebibytes(wanted)) : "");
+       decoding_.memory_flag ? "; " + to_cure(Cure::more_memory, mebibytes(enough)) : "");
 }
 
 void ContainerInput::describe_cut() {

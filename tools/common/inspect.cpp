@@ -52,11 +52,6 @@ void note_lost(StoredTexture& texture, const DumpInfo& info, const std::string& 
   }
 }
 
-/// True for kinds of files that are only read.
-bool becomes_exr(const Sequence& sequence) {
-  return !is_written(require_image_kind(sequence.frames.front().path));
-}
-
 StoredTexture stored_image(const Sequence& sequence, DumpInfo info) {
   StoredTexture texture;
   texture.file = from_file_name(sequence.name);
@@ -65,7 +60,8 @@ StoredTexture stored_image(const Sequence& sequence, DumpInfo info) {
   texture.names = sequence.names;
   texture.names.extension = written_extension(sequence);
   texture.info = std::move(info);
-  if (const auto* lost = find_attribute(texture.info.attributes, kLossyAttribute)) {
+  if (const auto* lost = find_attribute(texture.info.attributes, kLossyAttribute);
+      lost != nullptr && lost->type == "string") {
     texture.lossy = lost->value;
     texture.largest_error = error_of(texture.lossy);
   }
@@ -73,6 +69,10 @@ StoredTexture stored_image(const Sequence& sequence, DumpInfo info) {
 }
 
 }  // namespace
+
+bool becomes_exr(const Sequence& sequence) {
+  return !is_written(require_image_kind(sequence.frames.front().path));
+}
 
 std::vector<StoredTexture> inspect(const Sequence& sequence, Hints hints) {
   const FrameFile& first = sequence.frames.front();

@@ -57,6 +57,8 @@ struct StoredTexture {
   [[nodiscard]] std::string file_name(std::uint64_t frame) const;
 };
 
+/// True for kinds of files that are only read; decode writes EXR for them.
+[[nodiscard]] bool becomes_exr(const Sequence& sequence);
 /// Extension of the files that a sequence decodes to: its own, or EXR for images only read.
 [[nodiscard]] std::string written_extension(const Sequence& sequence);
 

@@ -29,7 +29,7 @@ constexpr std::array<std::string_view, 2> kImpliedOfParts = {"type", "chunkCount
 struct Typed {
   std::string_view name, type;
 };
-constexpr std::array<Typed, 10> kTyped{{{"compression", "compression"},
+constexpr std::array<Typed, 11> kTyped{{{"compression", "compression"},
                                         {"lineOrder", "lineOrder"},
                                         {"displayWindow", "box2i"},
                                         {"pixelAspectRatio", "float"},
@@ -38,7 +38,11 @@ constexpr std::array<Typed, 10> kTyped{{{"compression", "compression"},
                                         {"tiles", "tiledesc"},
                                         {"name", "string"},
                                         {"type", "string"},
-                                        {"chunkCount", "int"}}};
+                                        {"chunkCount", "int"},
+                                        {"dwaCompressionLevel", "float"}}};
+
+// OpenEXR writes "type" as one of these.
+constexpr std::array<std::string_view, 2> kPartTypes = {"scanlineimage", "tiledimage"};
 
 constexpr std::size_t kMaxName = 255;
 
@@ -236,41 +240,6 @@ std::string name_of_text(const std::string& text) {
   return text.starts_with("0x") && from_hex(text.substr(2), bytes) ? bytes : text;
 }
 
-void read_attributes(const ExrPart& part, bool several, DumpInfo& info) {
-  const Imf::Header usual(static_cast<int>(part.width), static_cast<int>(part.height));
-  std::set<std::string_view> seen;
-  for (const ExrAttribute& attribute : part.attributes) {
-    const std::string& name = attribute.name;
-    if (contains(kImplied, name) || (several && contains(kImpliedOfParts, name))) continue;
-    if (!seen.insert(name).second || is_head_field(name)) {
-      info.lost.push_back(fmt::format("{}attribute {}", is_head_field(name) ? "" : "a second ",
-                                      text_of_name(name)));
-      continue;
-    }
-    if (name == "compression" && attribute.bytes.size() == 1 && attribute.bytes[0] > 4) {
-      info.lost.emplace_back("its compression, which loses bits (ZIP comes back)");
-    }
-    // Attributes with the value of a default header follow.
-    const auto same = usual.find(name);
-    if (same != usual.end() && same.attribute().typeName() == attribute.type &&
-        bytes_of(same.attribute()) == attribute.bytes) {
-      continue;
-    }
-    set_attribute(info.attributes, {text_of_name(name), text_of_name(attribute.type),
-                                    to_text(attribute.type, attribute.bytes)});
-  }
-  if (part.x != 0 || part.y != 0) {
-    set_attribute(info.attributes, {kExrOrigin, "v2i", fmt::format("{} {}", part.x, part.y)});
-  }
-  std::string linear;
-  for (const ExrChannel& channel : part.channels) {
-    if (!channel.linear) continue;
-    if (!linear.empty()) linear += '\n';
-    linear += text_of_name(channel.name);
-  }
-  if (!linear.empty()) set_attribute(info.attributes, {kExrLinear, "string", linear});
-}
-
 bool exr_has_attribute(const Attribute& attribute) {
   // OpenEXR would cut a longer name, or one that contains NUL.
   const std::string name = name_of_text(attribute.name), type = name_of_text(attribute.type);
@@ -312,9 +281,61 @@ void set_attributes(Imf::Header& header, const Attributes& attributes, const std
   }
 }
 
+/// False for what OpenEXR does not write: a name that it knows with a value of another type.
+static bool is_writable(const Attribute& attribute) {
+  try {
+    require_exr_attributes({attribute}, "");
+    return attribute.name != "type" || contains(kPartTypes, attribute.value);
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 void require_exr_attributes(const Attributes& attributes, const std::string& path) {
   Imf::Header header;
   set_attributes(header, attributes, path);
+}
+
+void read_attributes(const ExrPart& part, bool several, DumpInfo& info) {
+  const Imf::Header usual(static_cast<int>(part.width), static_cast<int>(part.height));
+  std::set<std::string_view> seen;
+  for (const ExrAttribute& attribute : part.attributes) {
+    const std::string& name = attribute.name;
+    if (contains(kImplied, name) || (several && contains(kImpliedOfParts, name))) continue;
+    if (!seen.insert(name).second || is_head_field(name)) {
+      info.lost.push_back(fmt::format("{}attribute {}", is_head_field(name) ? "" : "a second ",
+                                      text_of_name(name)));
+      continue;
+    }
+    if (name == "compression" && attribute.bytes.size() == 1 && attribute.bytes[0] > 4) {
+      info.lost.emplace_back("its compression, which loses bits (ZIP comes back)");
+    }
+    // Attributes with the value of a default header follow.
+    const auto same = usual.find(name);
+    if (same != usual.end() && same.attribute().typeName() == attribute.type &&
+        bytes_of(same.attribute()) == attribute.bytes) {
+      continue;
+    }
+    const std::string& type = attribute.type;
+    Attribute kept{text_of_name(name),
+                   type.find(' ') == std::string::npos ? text_of_name(type) : "0x" + to_hex(type),
+                   to_text(attribute.type, attribute.bytes)};
+    if (is_writable(kept)) {
+      set_attribute(info.attributes, std::move(kept));
+    } else {
+      info.lost.push_back("attribute " + kept.name);
+    }
+  }
+  if (part.x != 0 || part.y != 0) {
+    set_attribute(info.attributes, {kExrOrigin, "v2i", fmt::format("{} {}", part.x, part.y)});
+  }
+  std::string linear;
+  for (const ExrChannel& channel : part.channels) {
+    if (!channel.linear) continue;
+    if (!linear.empty()) linear += '\n';
+    linear += text_of_name(channel.name);
+  }
+  if (!linear.empty()) set_attribute(info.attributes, {kExrLinear, "string", linear});
 }
 
 }  // namespace gicodec::tools

@@ -103,6 +103,8 @@ std::string_view cure_text(Cure cure) noexcept {
       return "write a file for each";
     case Cure::fetch_lfs:
       return "\"git lfs pull\" fetches it";
+    case Cure::encode_again:
+      return "encode again once it is written";
     case Cure::get_again:
       return "get the file again";
   }

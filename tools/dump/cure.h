@@ -61,6 +61,7 @@ enum class Cure {
   split_array,
   fetch_lfs,
   get_again,
+  encode_again,
 };
 inline constexpr auto kLastOwnCure = Cure::name_it;
 

@@ -98,8 +98,9 @@ void require_window(const Imath::Box2i& window, const Grid& size, const std::str
        height, size.x, size.y);
 }
 
-void read_texels(Imf::MultiPartInputFile& file, const ExrPart& part, const ExrImage& image,
-                 Dump& dump, const std::string& path) {
+/// Reads an image's samples; throws if some are missing.
+std::vector<std::vector<char>> read_samples(Imf::MultiPartInputFile& file, const ExrPart& part,
+                                            const ExrImage& image, const std::string& path) {
   const auto place = image.info.place;
   std::vector<std::vector<char>> planes;
   const auto number = static_cast<int>(place.part), level = static_cast<int>(place.level);
@@ -116,6 +117,10 @@ void read_texels(Imf::MultiPartInputFile& file, const ExrPart& part, const ExrIm
     lines.setFrameBuffer(frame_buffer(image, window, planes));
     lines.readPixels(window.min.y, window.max.y);
   }
+  return planes;
+}
+
+void set_texels(Dump& dump, const std::vector<std::vector<char>>& planes, const std::string& path) {
   dump.texels.resize(static_cast<std::size_t>(texture_bytes(dump.info.desc)));
   if (!dump.info.channels.exponent) return add_values(dump, planes, path);
   for (std::size_t i = 0; i < planes.size(); ++i) {
@@ -137,9 +142,9 @@ std::vector<Dump> read_exr(const std::string& path, const Hints& hints, bool tex
       // Where the table of places is missing OpenEXR finds lines and tiles by looking, so that only
       // reading shows whether all are there.
       if (texels || !file.partComplete(static_cast<int>(part))) {
-        read_texels(file, parts[part], image, dump, path);
+        const auto samples = read_samples(file, parts[part], image, path);
+        if (texels) set_texels(dump, samples, path);
       }
-      if (!texels) dump.texels = {};
     }
     return dumps;
   } catch (const Error&) {

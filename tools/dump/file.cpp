@@ -79,6 +79,14 @@ int open_hidden(const fs::path& target, std::string& name) {
   return -1;
 }
 
+/// Gives a file the mode, and the owner if it may, of the one that it will replace.
+void keep_mode(int descriptor, const std::string& target) {
+  struct stat old {};
+  if (stat(target.c_str(), &old) != 0 || !S_ISREG(old.st_mode)) return;
+  const bool owned = fchown(descriptor, old.st_uid, old.st_gid) == 0 || old.st_uid == geteuid();
+  if (owned) static_cast<void>(fchmod(descriptor, old.st_mode & 0777));
+}
+
 /// Opens PATH.partial, empty and locked. The lock ends with the program.
 int open_partial(const std::string& name) {
   for (;;) {
@@ -127,6 +135,12 @@ int rename_to(const std::string& from, const std::string& to, Existing existing)
 }
 
 [[noreturn]] void fail_existing(const std::string& path, Existing existing) {
+  if (access(path.c_str(), R_OK) != 0) {
+    const bool nowhere = errno == ENOENT;
+    fail(Exit::io, "{}: {}; name another output", path,
+         nowhere ? "is a link to nothing"
+                 : "exists and cannot be read, so that it is not replaced: permission denied");
+  }
   if (existing == Existing::container) {
     fail(Exit::io, "{}: exists and is no .gic container; {}", path, to_cure(Cure::name_container));
   }
@@ -169,8 +183,10 @@ void check_output(const std::string& path, const InputFiles& inputs, Existing ex
 
 void require_place(const std::string& path) {
   struct stat file {};
-  if (stat(path.c_str(), &file) != 0 || S_ISREG(file.st_mode)) return;
-  fail(Exit::io, "{}: is in the way and no regular file; move it or name another output", path);
+  if (lstat(path.c_str(), &file) != 0 || S_ISREG(file.st_mode)) return;
+  // What a link leads to may be an original.
+  fail(Exit::io, "{}: is in the way and {}; move it or name another output", path,
+       S_ISLNK(file.st_mode) ? "a link" : "no regular file");
 }
 
 bool is_container_file(const std::string& path) {
@@ -182,7 +198,8 @@ bool is_container_file(const std::string& path) {
 
 void require_exists(const std::string& path) {
   std::error_code error;
-  if (!fs::exists(path, error)) fail(Exit::io, "{}: does not exist", path);
+  if (fs::exists(path, error)) return;
+  fail(Exit::io, "{}: {}", path, error ? error.message() : "does not exist");
 }
 
 void finish_standard_output() {
@@ -255,12 +272,14 @@ void AtomicFile::open_temporary(Temporary temporary) {
     descriptor = open_hidden(target_, temporary_);
   }
   if (descriptor < 0) {
-    temporary_.clear();
+    const std::string name = std::exchange(temporary_, {});
     const int code = errno;
     if (code == ENOENT) require_folder(target_);
+    if (kept_) fail(Exit::io, "{}: cannot be written: {}", name, std::strerror(code));
     errno = code;
     fail_errno("cannot be written");
   }
+  keep_mode(descriptor, target_);
   stream_ = fdopen(descriptor, "wb");
   if (stream_ == nullptr) {
     const int code = errno;

@@ -107,14 +107,14 @@ std::string FileNames::of(const std::string& name, std::uint64_t frame) const {
 }
 
 std::vector<Sequence> group_sequences(const std::vector<std::string>& paths,
-                                      const NumberOptions& options,
-                                      std::vector<std::string>* remarks) {
+                                      const NumberOptions& options, SequenceRemarks* remarks) {
   std::vector<Input> inputs;
-  for (const std::string& path : expand_directories(paths, options.known, remarks)) {
+  for (const std::string& path :
+       expand_directories(paths, options.known, remarks ? &remarks->left_out : nullptr)) {
     (void)require_image_kind(path);
     inputs.push_back({path, parse_name(path)});
   }
-  settle_numbers(inputs, options, remarks);
+  settle_numbers(inputs, options, remarks ? &remarks->guesses : nullptr);
   std::int64_t base = options.known.empty() ? 0 : options.known.front().names.base;
   for (const Input& input : inputs) {
     if (options.known.empty()) base = std::min(base, input.parsed.value());

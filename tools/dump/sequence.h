@@ -39,6 +39,12 @@ struct Sequence {
   [[nodiscard]] std::string file_name(std::uint64_t frame) const { return names.of(name, frame); }
 };
 
+/// What a user is told of files.
+struct SequenceRemarks {
+  std::vector<std::string> left_out;  ///< by folders, a line each
+  std::vector<std::string> guesses;   ///< what numbers were taken for, a line each
+};
+
 /// How numbers in names of files are read.
 struct NumberOptions {
   bool allow_gaps = false;  ///< missing frames are no error
@@ -54,13 +60,12 @@ struct NumberOptions {
 /// .ktx2, .raw and .bin files, at most 10,000. A number behind a point is always a frame's, one
 /// behind another separator or none if it has three digits (none: four) or several files differ
 /// only in it, and they are one run of files of one shape; else it belongs to the name. Stills are
-/// of the first frame that numbers give. `remarks`, if not null: what was taken for what, and what
-/// was left out, a line each. Errors: a texture with two separators; the same frame twice; numbers
-/// of different width; unless `allow_gaps`, a missing frame that another numbered texture has or
-/// that lies between two frames, with `cure` as a hint.
+/// of the first frame that numbers give. `remarks`: may be null. Errors: a texture with two
+/// separators; the same frame twice; numbers of different width; unless `allow_gaps`, a missing
+/// frame that another numbered texture has or that lies between two frames, with `cure` as a hint.
 [[nodiscard]] std::vector<Sequence> group_sequences(const std::vector<std::string>& paths,
                                                     const NumberOptions& options = {},
-                                                    std::vector<std::string>* remarks = nullptr);
+                                                    SequenceRemarks* remarks = nullptr);
 /// "dumps/color" of "dumps/color.0003.exr".
 [[nodiscard]] std::string texture_path(const std::string& path);
 [[nodiscard]] bool is_separator(const std::string& text) noexcept;

@@ -134,13 +134,13 @@ std::vector<Compared> compare_pair(const Pair& pair, const CompareOptions& optio
   Hints hints =
       settle_formats(std::vector{pair.left, pair.right}, hints_for(options.geometry, pair.texture));
   std::vector<Dump> left = read_dumps(pair.left, hints), right = read_dumps(pair.right, hints);
-  const auto fits = [](const Dump& a, const Dump& b) {
-    return a.info.desc.record == b.info.desc.record || !(a.info.guessed || b.info.guessed);
-  };
-  if (!std::ranges::equal(left, right, fits)) {
-    hints.plain = true;  // One file says that its values are no codes.
-    left = read_dumps(pair.left, hints);
-    right = read_dumps(pair.right, hints);
+  for (const auto& [own, other] : {std::pair(&left, &right), std::pair(&right, &left)}) {
+    const DumpInfo &guessed = own->front().info, &known = other->front().info;
+    if (!guessed.guessed || known.guessed || guessed.desc.record == known.desc.record) continue;
+    // The other file says what the values are.
+    hints.format = known.desc.record.format;
+    *own = read_dumps(own == &left ? pair.left : pair.right, hints);
+    break;
   }
   const auto same_image = [](const Dump& a, const Dump& b) { return a.info.image == b.info.image; };
   if (!std::ranges::equal(left, right, same_image)) {
@@ -202,8 +202,11 @@ Exit compare(const CompareOptions& options, const Cli& cli) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   bool same = true;
   const bool folders = are_folders(options);
-  const auto left = group_sequences({options.left}, with_gaps(options.geometry.numbers));
-  const auto right = group_sequences({options.right}, with_gaps(options.geometry.numbers));
+  SequenceRemarks remarks;
+  const NumberOptions numbers = with_gaps(options.geometry.numbers);
+  const auto left = group_sequences({options.left}, numbers, &remarks);
+  const auto right = group_sequences({options.right}, numbers, &remarks);
+  for (const std::string& line : remarks.left_out) remark(line);
   const auto pairs = folders ? pairs_of_folders(options.left, left, options.right, right)
                              : std::vector<Pair>{{options.left, options.right, left.front().name}};
   std::vector<Sequence> all = left;

@@ -170,9 +170,10 @@ Exit crop(const CropOptions& options, const Cli& cli) {
          options.origin);
   }
   for (const std::string& path : options.inputs) require_exists(path);
-  std::vector<std::string> remarks;
+  SequenceRemarks remarks;
   const auto sequences = group_sequences(options.inputs, options.geometry.numbers, &remarks);
-  for (const std::string& line : remarks) {
+  for (const std::string& line : remarks.left_out) remark(line);
+  for (const std::string& line : remarks.guesses) {
     if (!cli.quiet) remark(line);
   }
   check_outputs(options, sequences);
@@ -186,7 +187,7 @@ Exit crop(const CropOptions& options, const Cli& cli) {
     hints.push_back(settle_formats(paths, hints_for(options.geometry, sequence.name)));
     for (const std::string& path : paths) {
       const std::string lost = not_kept(read_dump_infos(path, hints.back()), *origin, *size, path);
-      if (!lost.empty() && !cli.quiet) remark(fmt::format("{}: {} not kept", path, lost));
+      if (!lost.empty()) remark(fmt::format("{}: {} not kept", path, lost));
     }
   }
   const OutputDirectory directory(options.output);

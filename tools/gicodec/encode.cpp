@@ -82,8 +82,12 @@ struct Lane {
     if (next_file == files.frames.size()) return;
     const FrameFile& file = files.frames[next_file++];
     next = read_dump(file.path, hints_of(stored.info));
-    if (next->info.channels != stored.info.channels) {
-      fail(Exit::bad_input, "{}: changed while it was being read", file.path);
+    Attributes expected = stored.info_at(file.frame).attributes;
+    if (!stored.info.head) expected.clear();
+    if (becomes_exr(files)) describe(next->info.attributes, next->info.desc);
+    if (next->info.channels != stored.info.channels || next->info.attributes != expected) {
+      fail(Exit::bad_input, "{}: changed while it was being read; {}", file.path,
+           to_cure(Cure::encode_again));
     }
     require_nothing_outside(*next, file.path);
   }
@@ -163,7 +167,7 @@ std::vector<Lane> make_lanes(const EncodeOptions& options, const std::vector<Seq
     const bool leaves_out = !inactive.empty() && !roles.states[lanes.size()];
     if (leaves_out) stored.inactive = inactive;
     if (stored.info.fell_back) fell_back.push_back(stored.name);
-    if (!stored.dropped.empty() && !silent) {
+    if (!stored.dropped.empty() && !shares_standard_error(options.output)) {
       remark(fmt::format("{}: {} not kept", stored.dropped_in, stored.dropped));
     }
     if (is_lossy(options.backend, stored.info.desc.record)) {
@@ -244,7 +248,7 @@ Described describe(const EncodeOptions& options, const std::vector<Lane>& lanes,
   description.metadata.emplace_back("creator", fmt::format("gicodec {}", kVersionString));
   // A container that was cut off can thus name its missing frames.
   description.metadata.emplace_back("frames", fmt::format("{}-{}", frames.front(), frames.back()));
-  spread_metadata(described, output);
+  spread_metadata(described, frames.size(), output);
   return described;
 }
 
@@ -309,12 +313,15 @@ Exit encode(const EncodeOptions& options, const Cli& cli) {
     fail(Exit::usage, "-o {}: is named like a dump; a container is named FILE.gic", options.output);
   }
   for (const std::string& path : options.inputs) require_exists(path);
-  std::vector<std::string> remarks;
+  SequenceRemarks remarks;
   const auto sequences = group_sequences(options.inputs, options.geometry.numbers, &remarks);
   check_container_output(options, sequences);
   check_names(options.geometry, sequences);
   const bool silent = cli.quiet || shares_standard_error(options.output);
-  for (const std::string& line : remarks) {
+  for (const std::string& line : remarks.left_out) {
+    if (!shares_standard_error(options.output)) remark(line);
+  }
+  for (const std::string& line : remarks.guesses) {
     if (!silent) remark(line);
   }
   const bool told = options.geometry.numbers.stills || !options.geometry.numbers.patterns.empty();

@@ -104,13 +104,15 @@ std::size_t next_volume(Textures textures) {
   const auto alone = [&](std::size_t i) {
     return i + 1 == textures.size() || !of_one_file(*textures[i], *textures[i + 1]);
   };
+  constexpr std::size_t kMost = 255;  ///< of a volume
   const StoredTexture& first = *textures.front();
   std::size_t count = 1;
   if (!alone(0)) {
-    while (count < textures.size() && of_one_file(first, *textures[count])) ++count;
+    while (count < textures.size() && count < kMost && of_one_file(first, *textures[count]))
+      ++count;
     return count;
   }
-  while (count < textures.size() && alone(count) &&
+  while (count < textures.size() && count < kMost && alone(count) &&
          side_by_side(textures[count]->info.desc, first.info.desc)) {
     ++count;
   }
@@ -182,7 +184,7 @@ void add_volumes(ContainerDescription& description, const GeometryFlags& flags, 
   }
 }
 
-void spread_metadata(Described& described, const std::string& output) {
+void spread_metadata(Described& described, std::size_t frames, const std::string& output) {
   constexpr std::size_t kLong = 1024, kMax = std::size_t{256} << 10, kPair = 8;
   const auto bytes_of = [](const Metadata& metadata) {
     std::uint64_t bytes = 0;
@@ -211,7 +213,7 @@ void spread_metadata(Described& described, const std::string& output) {
        "{}: attributes of the files take {} bytes, of texture {} alone {}, and a container holds "
        "{}; {}",
        output, beside, textures[largest].name, bytes_of(described.beside[largest]), limit,
-       to_cure(Cure::fewer_frames));
+       to_cure(frames > 1 ? Cure::fewer_frames : Cure::erase_attribute));
 }
 
 }  // namespace gicodec::tools

@@ -35,6 +35,6 @@ struct Described {
 
 /// Moves what is long beside the description, so that this stays small. Throws Error of
 /// Exit::bad_input with a hint if it is more than a container holds.
-void spread_metadata(Described& described, const std::string& output);
+void spread_metadata(Described& described, std::size_t frames, const std::string& output);
 
 }  // namespace gicodec::tools

@@ -15,8 +15,11 @@ namespace gicodec::tools {
 namespace {
 
 std::string command_for(const std::string& path, const GeometryFlags& flags) {
+  const auto named = [](const std::string& name) {
+    return shell_word(name.starts_with('-') ? "./" + name : name);
+  };
   const std::string stem = std::filesystem::path(path).stem().string();
-  return fmt::format("gicodec encode -o {} {}{}", shell_word(stem + ".gic"), shell_word(path),
+  return fmt::format("gicodec encode -o {} {}{}", named(stem + ".gic"), named(path),
                      flags_text(flags));
 }
 

@@ -210,7 +210,9 @@ Exit verify(const VerifyOptions& options, const Cli& cli) {
     for (const StoredTexture& texture : input.textures()) {
       numbers.known.push_back({file_stem(texture), texture.names});
     }
-    sequences = group_sequences(options.files, numbers);
+    SequenceRemarks remarks;
+    sequences = group_sequences(options.files, numbers, &remarks);
+    for (const std::string& line : remarks.left_out) remark(line);
   }
   for (Sequence& sequence : sequences) {
     const auto named = [&](const StoredTexture& texture) {
