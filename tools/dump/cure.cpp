@@ -12,7 +12,7 @@ std::string_view cure_text(Cure cure) noexcept {
     case Cure::describe_raw:
       return "--vk-format and --extent do without one";
     case Cure::fix_format:
-      return "check its format and size, or give --vk-format and --extent";
+      return "check its format and size, or give --vk-format";
     case Cure::check_format:
       return "check --vk-format, or leave it out";
     case Cure::cut_rest:

@@ -204,11 +204,11 @@ std::vector<Lane> make_lanes(const EncodeOptions& options, const std::vector<Seq
     if (leaves_out) set_inactive(lanes.back(), inactive, options.inactive);
   }
   if (!fell_back.empty() && !silent) {
-    remark(
-        fmt::format("kept as floats, since not all of their values are n/1023, as those of "
-                    "10-bit colour are: {}",
-                    listed(std::span(fell_back).first(std::min<std::size_t>(4, fell_back.size())),
-                           fell_back.size())));
+    remark(fmt::format(
+        "kept as they are, since not all of their values are 10-bit codes, n/1023 or whole "
+        "numbers up to 1023: {}",
+        listed(std::span(fell_back).first(std::min<std::size_t>(4, fell_back.size())),
+               fell_back.size())));
   }
   if (!options.backend.lossy.empty() && !any_lossy) {
     fail(Exit::usage, "--lossy has nothing to do: no texture holds 10-bit colour");
