@@ -199,6 +199,7 @@ TEST_F(CliBadContainer, HostileMetadata) {
            {"digits", "99999999999"},
            {"extension", ".x"},
            {"extension", "json"},
+           {"extension", "3/"},
            {"attribute@99999999999999999999:a", "int 1"},
            {"file bytes", "99999999999999999999"},
            {"digits", "4x"},

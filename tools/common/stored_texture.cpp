@@ -294,8 +294,9 @@ StoredTexture from_entry(const TextureEntry& entry, const std::string& path) {
     } else if (key == "image") {
       read_place(texture.info, value, where);
     } else if (key == "extension") {
-      const bool is_kind = value.empty() || image_kind("x." + value);
-      if (!is_kind || value.find('.') != std::string::npos) {
+      const bool is_kind = is_file_name(value) && value.find('.') == std::string::npos &&
+                           image_kind("x." + value).has_value();
+      if (!value.empty() && !is_kind) {
         fail(Exit::bad_input, "{}: metadata extension is damaged", where);
       }
       texture.names.extension = value;
