@@ -79,6 +79,10 @@ TEST_F(CliWords, ValuesThatAreNoCodes) {
       {"c.png: holds 8 bits per channel", "10 of A2R10G10B10", "--vk-format R8G8B8A8_UNORM"});
   program_.succeed({"encode", "-o", "z.gic", "c.png"});
   EXPECT_NE(program_.succeed({"info", "z.gic"}).out.find("R8G8B8_UNORM"), std::string::npos);
+  // What is lost is said in quiet runs too.
+  const Outcome quiet = program_.succeed({"-q", "encode", "-o", "q.gic", "c.png"});
+  EXPECT_NE(quiet.err.find("that it is png (decode writes EXR) not kept"), std::string::npos)
+      << quiet.err;
   // The EXR that stands for it is read as the same format.
   program_.succeed({"decode", "z.gic", "-o", "z"});
   program_.succeed({"compare", "c.png", "z/c.exr"});

@@ -66,7 +66,7 @@ NumberOptions with_gaps(NumberOptions numbers) {
 }
 
 /// The file, or one of its name whose kind is only read, so that decode gives EXR for it.
-std::string source_of(fs::path file) {
+std::string source_of(const fs::path& file) {
   for (const char* ending : {".exr", ".png", ".tif", ".tiff", ".dpx"}) {
     const fs::path other = fs::path(file).replace_extension(ending);
     if (fs::exists(other)) return other.string();
