@@ -396,6 +396,7 @@ TEST_F(Sidecar, SaysWhatIsWrong) {
            std::pair("{\"extent\": [8, 8], \"attributes\": {\"a\": \"1\", \"a\": \"2\"}}",
                      "\"a\" stands twice"),
            std::pair("{\"extent\": [8, 8], \"attributes\": {\"\": \"1\"}}", "has no name"),
+           std::pair("{\"extent\": [8, 8e880]}", "a number that is too large"),
            std::pair("{}", "lacks \"extent\""),
            std::pair("{\"extent\": [8]}", "no list of two or three sides"),
            std::pair("{\"extent\": [8, 0]}", "no list of two or three sides"),

@@ -99,6 +99,8 @@ class Sidecar {
       const auto line =
           std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(end), '\n');
       fail(Exit::bad_input, "{}: is no JSON from line {} on", path_, line + 1);
+    } catch (const Json::out_of_range&) {
+      fail(Exit::bad_input, "{}: has a number that is too large", path_);
     }
   }
   void set_extent(TextureHead& head, const Json& value) {
