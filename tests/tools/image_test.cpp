@@ -8,6 +8,7 @@
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <string_view>
@@ -80,6 +81,24 @@ TEST(Image, SixteenBitColour) {
       EXPECT_TRUE(back.info.channels.alpha);
     }
   }
+}
+
+// Behind a chunk of one byte.
+TEST(Image, FramesOfAnAnimatedPngAreCounted) {
+  const TemporaryDirectory directory;
+  const std::string path = directory.path("a.png");
+  write_image(path, image_extent(kColour), 3, OIIO::TypeDesc::UINT16,
+              samples_of(random_dump(kColour, 1), 3, false).data());
+  auto bytes = file_bytes(path);
+  constexpr std::string_view kChunks(
+      "\0\0\0\1sRGB\0\xAE\xCE\x1C\xE9\0\0\0\x08"
+      "acTL\0\0\0\3\0\0\0\0\0\0\0\0",
+      33);
+  const auto chunks = std::as_bytes(std::span(kChunks));
+  bytes.insert(bytes.begin() + 33, chunks.begin(), chunks.end());  // behind IHDR
+  write_bytes(path, bytes);
+  const auto lost = read_dump_info(path, colour_hints()).lost;
+  EXPECT_NE(std::ranges::find(lost, "2 more of its frames"), lost.end());
 }
 
 TEST(Image, TenBitDpx) {

@@ -157,16 +157,18 @@ int png_frames(const std::string& path) {
   constexpr int kMagic = 8, kChecksum = 4;
   std::ifstream file(path, std::ios::binary);
   file.seekg(kMagic);
-  for (std::array<unsigned char, 12> chunk{};
-       file.read(reinterpret_cast<char*>(chunk.data()), 12);) {
-    const auto word = [&](std::size_t at) {
-      return std::uint32_t{chunk[at]} << 24 | std::uint32_t{chunk[at + 1]} << 16 |
-             std::uint32_t{chunk[at + 2]} << 8 | chunk[at + 3];
-    };
-    const std::string_view type(reinterpret_cast<const char*>(&chunk[4]), 4);
-    if (type == "IDAT" || word(0) < 4) break;
-    if (type == "acTL") return static_cast<int>(std::min<std::uint32_t>(word(8), INT32_MAX));
-    file.seekg(std::streamoff{word(0)} - 4 + kChecksum, std::ios::cur);
+  const auto word = [&] {
+    std::array<unsigned char, 4> bytes{};
+    file.read(reinterpret_cast<char*>(bytes.data()), bytes.size());
+    return std::uint32_t{bytes[0]} << 24 | std::uint32_t{bytes[1]} << 16 |
+           std::uint32_t{bytes[2]} << 8 | bytes[3];
+  };
+  while (file) {
+    const std::uint32_t size = word(), type = word();
+    if (type == 0x49444154) break;  // IDAT
+    if (type == 0x6163544C)
+      return static_cast<int>(std::min<std::uint32_t>(word(), INT32_MAX));  // acTL
+    file.seekg(std::streamoff{size} + kChecksum, std::ios::cur);
   }
   return 1;
 }
