@@ -126,6 +126,7 @@ void write_sidecar(const std::string& path, const DumpInfo& info, Existing exist
     TextureFile old(sidecar);
     if (std::ranges::equal(old.read(0, bytes.size()), bytes)) return;
   }
+  require_place(sidecar);
   write_file(sidecar, bytes, existing);
 }
 

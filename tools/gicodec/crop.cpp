@@ -97,10 +97,9 @@ Dump crop_dump(const Dump& from, const Grid& origin, const Grid& size, const std
   to.info.desc.records = cropped_records(old_desc, origin, size);
   if (to.info.head && is_described(from.info, path)) describe(to.info.attributes, to.info.desc);
   // A file that flags described gets a sidecar, which says its size.
-  if (const auto* sidecar = find_attribute(to.info.attributes, kRawSidecar);
-      sidecar != nullptr && sidecar->value == "none") {
-    std::erase(to.info.attributes, *sidecar);
-  }
+  std::erase_if(to.info.attributes, [](const Attribute& attribute) {
+    return attribute.name == kRawSidecar && attribute.value == "none";
+  });
   move_origin(to.info.attributes, origin);
   (void)drop_size_fields(to.info.attributes);
   const TextureDesc& desc = to.info.desc;
