@@ -2,6 +2,7 @@
 #include "container_support.h"
 
 #include "base/bytes.h"
+#include "bitstream/container_format.h"
 
 #include <gtest/gtest.h>
 
@@ -253,6 +254,16 @@ TEST(HostileContainer, Limits) {
   ASSERT_TRUE(listing.seekable());
   EXPECT_EQ(listing.seek(sample.packets[5].frame), Status::ok);
   EXPECT_EQ(listing.seek(sample.packets.back().frame), Status::unknown_frame);
+}
+
+TEST(HostileContainer, AnIndexPartThatEndsInItsHead) {
+  std::vector<std::byte> body;
+  write_index_part({}, 8, 100, body);
+  ASSERT_TRUE(read_index_part_head(body).ok());
+  EXPECT_EQ(read_index_part_head(body)->before, 8U);
+  for (std::size_t size = 0; size < 9; ++size) {
+    EXPECT_EQ(read_index_part_head(std::span(body).first(size)).status(), Status::corrupt) << size;
+  }
 }
 
 TEST(HostileContainer, AWrongIndexIsNoIndex) {

@@ -458,6 +458,36 @@ TEST(ContainerPlayer, SeeksToWhatKeyframesGoBy) {
   }
 }
 
+/// After seek() nothing is left of what came later.
+TEST(ContainerPlayer, SeeksToBeforeATexture) {
+  const TextureDesc desc = map_texture(Format::R8_UINT, {4, 4, 1}, {4, 4, 1});
+  TextureGroup group;
+  group.textures = {{"first", desc, {}, {}}, {"later", desc, {}, {}}};
+  ContainerDescription description;
+  ASSERT_EQ(add_volume(description, "volume", *texture_volume({&group, 1})), Status::ok);
+  MemorySink sink;
+  auto writer = *ContainerWriter::create(sink, description);
+  auto first = *Encoder::create(desc, {.texture_id = 0}),
+       later = *Encoder::create(desc, {.texture_id = 1});
+  const Bytes sevens(16, std::byte{7});
+  ASSERT_EQ(writer.add(0, *first.encode(ConstTextureView(sevens))), Status::ok);
+  ASSERT_EQ(writer.add(1, *later.encode(ConstTextureView(sevens))), Status::ok);
+  ASSERT_EQ(writer.finish(), Status::ok);
+  MemorySource source(sink.bytes), again(sink.bytes);
+  auto player = *ContainerPlayer::open(source, {}), fresh = *ContainerPlayer::open(again, {});
+  for (int frame = 0; frame < 2; ++frame) ASSERT_EQ(player.next(), Status::ok);
+  Bytes played(16, std::byte{1});
+  ASSERT_EQ(player.read(1, TextureView{played}), Status::ok);
+  ASSERT_EQ(played, sevens);
+  ASSERT_EQ(player.seek(0), Status::ok);
+  ASSERT_EQ(player.next(), Status::ok);
+  ASSERT_EQ(fresh.next(), Status::ok);
+  Bytes sought(16, std::byte{1}), expected(16, std::byte{1});
+  EXPECT_EQ(player.read(1, TextureView{sought}), fresh.read(1, TextureView{expected}));
+  EXPECT_EQ(sought, expected);
+  EXPECT_NE(sought, sevens);
+}
+
 /// Descriptions cost nothing, after seek() neither.
 TEST(ContainerPlayer, TexturesWithoutPacketsCostNothing) {
   const TextureDesc small = map_texture(Format::R8_UINT, {4, 4, 1}, {4, 4, 1});

@@ -5,6 +5,8 @@
 #include "bitstream/description.h"
 #include "bitstream/packet.h"
 
+#include <gicodec/textures.h>
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -299,6 +301,40 @@ TEST_F(SessionError, ViewsOfTheDecoder) {
   EXPECT_EQ(decoder.read(out.view(), std::vector<std::uint32_t>{0, block_count(kDesc)}),
             Status::block_out_of_range);
   EXPECT_EQ(decoder.decode(packet, out.view()), Status::ok);
+}
+
+TEST_F(SessionError, BlocksOfATextureWithinAnother) {
+  auto encoder = *Encoder::create(kDesc);
+  auto decoder = *Decoder::create(kDesc);
+  EXPECT_TRUE(std::all_of(decoder.records().begin(), decoder.records().end(),
+                          [](std::byte b) { return b == std::byte{0}; }));
+  ASSERT_EQ(decoder.decode(next(encoder)), Status::ok);
+  Texture out(kDesc);
+  const std::uint32_t last = block_count(kDesc) - 1;
+  const auto read = [&](std::uint32_t block, std::uint32_t place) {
+    return decoder.read({&block, 1}, kDesc, out.view(), {&place, 1});
+  };
+  EXPECT_EQ(read(0, last), Status::ok);
+  EXPECT_EQ(read(last, 0), Status::ok);
+  EXPECT_EQ(read(last + 1, 0), Status::block_out_of_range);
+  EXPECT_EQ(read(0, last + 1), Status::block_out_of_range);
+}
+
+/// Where the list of blocks takes as much as they do.
+TEST_F(SessionError, BoundHoldsForManyTinyBlocks) {
+  const TextureDesc desc = map_texture(Format::R8_UINT, {64, 64, 1}, {1, 1, 1});
+  auto encoder = *Encoder::create(desc, {.backend = "raw", .gop = 0});
+  Texture texture(desc);
+  ASSERT_TRUE(encoder.encode(std::as_const(texture).view()).ok());
+  texture.fill(Fill::noise, random_);
+  std::vector<std::uint32_t> some;
+  for (std::uint32_t block = 0; block < block_count(desc); ++block) {
+    if (pick(random_, 0, 1) == 0) some.push_back(block);
+  }
+  const auto packet = encoder.encode(std::as_const(texture).view(), some);
+  ASSERT_TRUE(packet.ok());
+  EXPECT_GT(packet->size(), some.size() + 256);
+  EXPECT_LE(packet->size(), encoder.bound(some.size()));
 }
 
 TEST_F(SessionError, PacketLimit) {

@@ -174,6 +174,19 @@ TEST_F(VolumeCodec, OptionsAreThoseOfAllTextures) {
             Status::invalid_argument);
 }
 
+TEST_F(VolumeCodec, PacketsSayWhichTextureTheyAreOf) {
+  constexpr std::uint8_t kFirst = 9;
+  auto one_by_one = *VolumeDecoder::create(volume_, {.first_texture = kFirst});
+  auto together = *VolumeDecoder::create(volume_);
+  const auto numbered = updates({.first_texture = kFirst}), plain = updates();
+  for (std::size_t update = 0; update < plain.size(); ++update) {
+    ASSERT_EQ(together.decode(plain[update]), Status::ok);
+    for (const Packet& packet : numbered[update]) ASSERT_EQ(one_by_one.decode(packet), Status::ok);
+    EXPECT_EQ(state_of(one_by_one), state_of(together)) << update;
+  }
+  EXPECT_EQ(one_by_one.decode(plain[0][0]), Status::unknown_texture);
+}
+
 TEST_F(VolumeCodec, KeyframesComeTogether) {
   auto encoder = *VolumeEncoder::create(volume_, {.gop = 2, .first_texture = 9});
   for (std::size_t update = 0; update < all_.size(); ++update) {

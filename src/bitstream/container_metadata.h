@@ -23,7 +23,7 @@ void write_metadata(const Metadata& metadata, ByteWriter& writer);
 void read_metadata(ByteReader& reader, Metadata& metadata, std::size_t most = kMaxText);
 
 /// Entries that a metadata entry may hold, and bytes of its metadata.
-inline constexpr std::size_t kMaxPackedEntries = std::size_t{1} << 20;
+inline constexpr std::size_t kMaxPackedEntries = std::size_t{1} << 18;
 inline constexpr std::uint64_t kMaxPackedMetadata = std::uint64_t{64} << 20;
 /// Most bytes of a metadata entry's fields before the packed bytes.
 inline constexpr std::size_t kPackedHead = 1 + kMaxVarint;

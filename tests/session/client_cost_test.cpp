@@ -118,6 +118,38 @@ TEST_F(ClientCost, MemoryStaysWithinTheLimit) {
   }
 }
 
+/// What a client refuses by is what it is said to take.
+TEST_F(ClientCost, TheLimitIsWhatItSays) {
+  make("native");
+  for (const Delivery delivery : {Delivery::unicast, Delivery::shared}) {
+    ClientOptions options = options_of(delivery);
+    const ConnectionId connection = *server_->connect(0);
+    server_->receive(connection, *Client::create(options)->hello(), 0);
+    const auto said = *read_message(joined(server_->take_messages(connection)).at(0));
+    const auto& volumes = std::get<Welcome>(said).volumes;
+    const std::uint64_t all = client_memory(*volumes_of(volumes, options, 2), delivery, 2, 1);
+    EXPECT_GT(all, 2 * texture_bytes(texture_.desc()));
+    options.threads.count = 1;
+    options.limits.max_total_bytes = all;
+    EXPECT_TRUE(volumes_of(volumes, options, 2).ok());
+    options.limits.max_total_bytes = all - 1;
+    EXPECT_EQ(volumes_of(volumes, options, 2).status(), Status::limit_exceeded);
+  }
+}
+
+/// Room to decode in is that of the largest region, also where the last is smaller.
+TEST(ClientMemory, GrowsWithTheGrid) {
+  std::uint64_t before = 0;
+  for (const Grid grid : {Grid{4, 4, 4}, Grid{5, 4, 4}, Grid{8, 4, 4}}) {
+    const TextureDesc desc = probe_texture(Format::R16G16_SFLOAT, grid, 8);
+    ClientVolume volume{0, 0, "v", probes_of({{"t", desc}}), {grid}, {4, 4, 4}, {}};
+    volume.textures.push_back({"t", desc, {}, {}, 0});
+    const std::uint64_t all = client_memory({volume}, Delivery::shared, 1, 1);
+    EXPECT_GT(all, before) << grid.x;
+    before = all;
+  }
+}
+
 ClientFrame frame_of(const Welcome& welcome) {
   ClientFrame frame;
   frame.volumes = *volumes_of(welcome.volumes, {}, 1);

@@ -228,6 +228,32 @@ TEST(Messages, TakesTextsAsLongAsTheLimits) {
   EXPECT_EQ(write_message(welcome, message), Status::invalid_argument);
 }
 
+TEST(Messages, TakesTheLastVolume) {
+  Message message;
+  ASSERT_EQ(write_message(Subscribe{1, kMaxVolumes - 1, 0, {}}, message), Status::ok);
+  const auto read = read_message(message);
+  ASSERT_TRUE(read.ok());
+  EXPECT_EQ(std::get<Subscribe>(*read).volume, kMaxVolumes - 1);
+  EXPECT_EQ(write_message(Subscribe{1, kMaxVolumes, 0, {}}, message), Status::invalid_argument);
+}
+
+TEST(Messages, RefusesNumbersThatAreNone) {
+  constexpr float kMarked = 1234.5F;
+  Viewpoint viewpoint;
+  viewpoint.eye = {kMarked, 0, 0};
+  Message message;
+  ASSERT_EQ(write_message(viewpoint, message), Status::ok);
+  const auto marked = std::as_bytes(std::span(&kMarked, 1));
+  const auto at = std::search(message.begin(), message.end(), marked.begin(), marked.end());
+  ASSERT_NE(at, message.end());
+  ASSERT_TRUE(read_message(message).ok());
+  for (const float none :
+       {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+    std::ranges::copy(std::as_bytes(std::span(&none, 1)), at);
+    EXPECT_EQ(read_message(message).status(), Status::corrupt);
+  }
+}
+
 TEST(Messages, RefusesRegionsBeyondTheirRange) {
   Welcome welcome;
   welcome.ticket[0] = std::byte{1};

@@ -3,6 +3,7 @@
 #include "payload_rows.h"
 
 #include <gicodec/server.h>
+#include <gicodec/textures.h>
 
 #include <gtest/gtest.h>
 
@@ -46,6 +47,16 @@ TEST(RegionSize, LargeSlotsAreARegionEach) {
   EXPECT_EQ(usual_region(volume), (Grid{1, 1, 1}));
   volume.groups[0].textures[0].desc = pool_texture(Format::R32_UINT, 1U << 16, {7, 1, 1});
   EXPECT_EQ(usual_region(volume), (Grid{4096, 1, 1}));
+}
+
+/// Also where no side is left to halve.
+TEST(RegionSize, LargeBlocksOfAGridAreARegionEach) {
+  VolumeDesc volume;
+  volume.kind = 200;
+  volume.groups = {{}};
+  volume.groups[0].textures = {
+      {"large", map_texture(Format::R32G32B32A32_SFLOAT, {256, 384, 1}, {128, 128, 1})}};
+  EXPECT_EQ(usual_region(volume), (Grid{1, 1, 1}));
 }
 
 /// A client is told the volume's own.

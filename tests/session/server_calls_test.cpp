@@ -354,6 +354,34 @@ TEST_F(ServerTest, ViewpointsThatAreNoneAreRefusedAtOnce) {
   EXPECT_TRUE(client.is_connected());
 }
 
+TEST_F(ServerTest, ViewpointsAreSentInASession) {
+  make();
+  Client client = make_client();
+  const ConnectionId connection = join(client);
+  exchange(connection, client);
+  ASSERT_TRUE(client.is_connected());
+  ASSERT_EQ(client.set_viewpoint({.time = 7}), Status::ok);
+  const auto said = client.take_messages();
+  ASSERT_EQ(said.size(), 1U);
+  EXPECT_EQ(std::get<Viewpoint>(*read_message(said[0])).time, 7);
+}
+
+TEST_F(ServerTest, RatesBoundAnUpdate) {
+  constexpr std::uint32_t kRate = 2000;
+  ServerOptions options;
+  options.limits.max_bytes_per_second = kRate;
+  make(options);
+  Client client = make_client();
+  const ConnectionId connection = join(client);
+  exchange(connection, client);
+  update();
+  std::size_t bytes = 0;
+  for (const Message& message : joined(server_->take_messages(connection))) bytes += message.size();
+  EXPECT_GT(bytes, 0U);
+  EXPECT_LT(bytes, kRate + block_bytes(texture_.desc()) + 500);
+  EXPECT_GT(kBlocks * block_bytes(texture_.desc()), 2 * kRate);
+}
+
 /// Renderers know their textures by the instance, whichever server a volume is of.
 TEST_F(ServerTest, InstancesAreGivenOnce) {
   Client client = make_client();

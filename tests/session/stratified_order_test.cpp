@@ -94,6 +94,15 @@ RC_GTEST_PROP(StratifiedOrder, IsEvenOverTheSlicesOfTheLongestAxis, (std::uint64
   RC_ASSERT(wrong.empty());
 }
 
+/// Of axes as long as each other along the last.
+TEST(StratifiedOrder, GoesAlongTheLastOfTheLongestAxes) {
+  constexpr Grid kEven{4, 3, 4};
+  const auto vertices = in_order(stratified_order(kEven));
+  for (std::uint32_t slice = 0; slice < kEven.z; ++slice) {
+    EXPECT_EQ(place_of(kEven, vertices[corners_of(kEven) + slice])[2], slice);
+  }
+}
+
 /// Within a slice they come by chance: not row by row.
 TEST(StratifiedOrder, IsRandomWithinASlice) {
   constexpr Grid kSlices{12, 12, 20};

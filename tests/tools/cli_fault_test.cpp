@@ -3,6 +3,8 @@
 #include "dump/file.h"
 #include "tools/cli_support.h"
 
+#include <gicodec/textures.h>
+
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -50,6 +52,73 @@ TEST_F(CliFault, FullDisk) {
     EXPECT_FALSE(fs::exists(program_.path("new"))) << "a folder or temporary was left behind";
   }
 }
+
+/// Texels and the sidecar that describes them are of one decoding, on a full disk too.
+TEST_F(CliFault, FullDiskUnderASidecar) {
+  const auto make = [&](const char* name, Format format, Grid size, std::uint32_t seed) {
+    const TextureDesc desc = map_texture(format, size, {8, 8, 1});
+    const Dump dump{make_info(desc), random_texels(desc, seed)};
+    fs::create_directories(program_.path(name));
+    write_dump(program_.path(fmt::format("{}/a.raw", name)), dump.info, dump.texels);
+    program_.succeed({"encode", "-q", "-o", fmt::format("{}.gic", name), name});
+  };
+  make("old", Format::R16_UNORM, {80, 25, 1}, 1);
+  make("new", Format::R8G8B8A8_UNORM, {40, 25, 1}, 2);
+  fs::copy(program_.path("old"), program_.path("out"));
+  EXPECT_EQ(limited(1024, {"decode", "new.gic", "-o", "out", "--overwrite"}).exit, 4);
+  for (const char* name : {"a.raw", "a.json"}) {
+    EXPECT_EQ(file_bytes(program_.path(fmt::format("out/{}", name))),
+              file_bytes(program_.path(fmt::format("old/{}", name))));
+  }
+  EXPECT_EQ(program_.files("out").size(), 2U);
+  EXPECT_EQ(limited(1024, {"decode", "new.gic", "-o", "other"}).exit, 4);
+  EXPECT_FALSE(fs::exists(program_.path("other")));
+}
+
+#if defined(GICODEC_FAILING_MALLOC)
+/// Any allocation may fail: what is there is whole, and the exit code says whether it is all. Those
+/// before main() are of the loader.
+TEST_F(CliFault, AllocationsThatFail) {
+  program_.make_dumps(1);
+  program_.succeed({"encode", "-o", "x.gic", "in"});
+  program_.succeed({"decode", "x.gic", "-o", "raw", "--files", "raw"});
+  const auto allocations = [&](const std::vector<std::string>& arguments) {
+    Circumstances counted;
+    counted.allocations = program_.path("count");
+    EXPECT_EQ(program_.run_in(counted, arguments).exit, 0);
+    const auto bytes = file_bytes(program_.path("count"));
+    return std::stol(std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+  };
+  const long first = allocations({"--version"});
+  for (const std::string kind : {"in", "raw"}) {
+    const std::vector<std::string> decode = {
+        "decode",    "x.gic",      "-o",      "out",
+        "--threads", "1",          "--files", kind == "in" ? "exr" : "raw",
+        "--quiet",   "--overwrite"};
+    const long last = allocations(decode);
+    ASSERT_GT(last, first);
+    for (long number = first; number <= last; number += 1 + (last - first) / 60) {
+      fs::remove_all(program_.path("out"));
+      Circumstances failing;
+      failing.failing_allocation = number;
+      const Outcome outcome = program_.run_in(failing, decode);
+      EXPECT_TRUE(outcome.exit == 0 || outcome.exit == 4 || outcome.exit == 5)
+          << number << ": " << outcome.exit << outcome.err;
+      const auto files =
+          fs::exists(program_.path("out")) ? program_.files("out") : std::vector<std::string>();
+      if (outcome.exit == 0) {
+        EXPECT_EQ(files, program_.files(kind)) << number;
+      }
+      for (const std::string& name : files) {
+        ASSERT_TRUE(fs::exists(program_.path(kind + "/" + name))) << number << name;
+        EXPECT_EQ(file_bytes(program_.path("out/" + name)),
+                  file_bytes(program_.path(kind + "/" + name)))
+            << number << name;
+      }
+    }
+  }
+}
+#endif
 
 TEST_F(CliFault, ResultsThatCannotBeWritten) {
   program_.make_dumps(1);

@@ -182,6 +182,7 @@ TEST(Cli, VerifyFindsOneBit) {
       nlohmann::json::parse(program.run({"verify", "x.gic", "in", "--format", "json"}).out);
   EXPECT_EQ(json["identical"], false);
   EXPECT_EQ(json["files_identical"], 5);
+  EXPECT_EQ(outcome.out.find("LOSSY"), std::string::npos) << outcome.out;
 }
 
 TEST(Cli, VerifyFindsMissingAndLeftOverFiles) {
@@ -190,6 +191,11 @@ TEST(Cli, VerifyFindsMissingAndLeftOverFiles) {
   program.succeed({"encode", "-o", "x.gic", "in"});
   Arguments fewer(dumps.begin(), dumps.end() - 1);
   EXPECT_EQ(program.run(Arguments{"verify", "x.gic"} + fewer).exit, 1);
+  const Outcome said = program.run(Arguments{"verify", "--format", "json", "x.gic"} + fewer);
+  EXPECT_NE(said.out.find("\"missing\": \"vis.0002.exr was not given\""), std::string::npos)
+      << said.out;
+  EXPECT_NE(program.succeed({"verify", "x.gic"}).out.find("name the dumps to compare them"),
+            std::string::npos);
   std::filesystem::copy(dumps[0], program.path("in/color.0003.exr"));
   const Outcome more = program.run({"verify", "x.gic", "in"});
   EXPECT_EQ(more.exit, 1);

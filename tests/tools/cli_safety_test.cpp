@@ -102,9 +102,27 @@ TEST_F(CliSafety, DecodeKeepsWhatTheContainerLacks) {
   program_.succeed({"encode", "-o", "part.gic", "--inactive", "inactive.txt", "in"});
   expect_refused(Exit::io, {"decode", "part.gic", "-o", "in", "--overwrite"},
                  {"may be the original", "4 inactive probes", "another folder"});
+  // A file that cannot be read may be one as well.
+  fs::copy(program_.path("in"), program_.path("damaged"));
+  fs::resize_file(program_.path("damaged/color.0000.exr"), 500);
+  expect_refused(Exit::io, {"decode", "part.gic", "-o", "damaged", "--overwrite"},
+                 {"may be the original", "it cannot be compared"});
   // A result of its own is replaced all the same.
   program_.succeed({"decode", "part.gic", "-o", "out"});
   program_.succeed({"decode", "part.gic", "-o", "out", "--overwrite"});
+}
+
+TEST_F(CliSafety, DecodeKeepsAContainerNamedLikeASidecar) {
+  program_.succeed({"decode", "x.gic", "-o", "raw", "--files", "raw"});
+  fs::copy_file(program_.path("x.gic"), program_.path("raw/vis.0001.json"),
+                fs::copy_options::overwrite_existing);
+  fs::remove(program_.path("raw/color.0000.raw"));
+  const auto container = file_bytes(program_.path("x.gic"));
+  const Outcome outcome =
+      program_.run({"decode", "raw/vis.0001.json", "-o", "raw", "--files", "raw", "--overwrite"});
+  EXPECT_EQ(outcome.exit, 2);
+  EXPECT_NE(outcome.err.find("one of the inputs"), std::string::npos) << outcome.err;
+  EXPECT_EQ(file_bytes(program_.path("raw/vis.0001.json")), container);
 }
 
 TEST_F(CliSafety, CropReplacesOnlyWhenToldAndNeverItsInputs) {

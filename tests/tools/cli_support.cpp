@@ -107,6 +107,13 @@ Outcome Program::run_in(const Circumstances& circumstances,
     setenv("LSAN_OPTIONS", lsan_options.c_str(), 1);
     const std::string& libraries = circumstances.libraries;
     if (!libraries.empty()) setenv("LD_LIBRARY_PATH", libraries.c_str(), 1);
+#if defined(GICODEC_FAILING_MALLOC)
+    if (circumstances.failing_allocation != 0 || !circumstances.allocations.empty()) {
+      setenv("LD_PRELOAD", GICODEC_FAILING_MALLOC, 1);
+      setenv("GICODEC_FAILING", fmt::format("{}", circumstances.failing_allocation).c_str(), 1);
+      setenv("GICODEC_ALLOCATIONS", circumstances.allocations.c_str(), 1);
+    }
+#endif
     execv(argv[0], argv.data());
     _exit(126);
   }

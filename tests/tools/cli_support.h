@@ -28,6 +28,8 @@ struct Circumstances {
   /// and theirs besides.
   rlim_t memory = RLIM_INFINITY;
   std::string libraries = {};       ///< folder that is searched first for libraries and modules
+  long failing_allocation = 0;      ///< number of one that fails; 0: none
+  std::string allocations = {};     ///< a file that gets their number
   bool closed = false;              ///< standard output and error are
   std::string output = {};          ///< standard output, for Outcome::out if it is empty
   bool unread = false;              ///< standard output is a pipe that nobody reads

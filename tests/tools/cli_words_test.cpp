@@ -4,6 +4,7 @@
 #include "tools/cli_support.h"
 
 #include <gicodec/gicodec.h>
+#include <gicodec/textures.h>
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -253,6 +254,39 @@ TEST_F(CliWords, InfoSumsUp) {
   const auto verbose = nlohmann::json::parse(
       program_.succeed({"info", "x.gic", "--verbose", "--format", "json"}).out);
   EXPECT_TRUE(verbose["textures"][0].contains("native"));
+}
+
+TEST_F(CliWords, BackendsAreListed) {
+  const std::string text = program_.succeed({"backends"}).out;
+  EXPECT_NE(text.find("native   made for"), std::string::npos) << text;
+  EXPECT_NE(text.find("run on this machine"), std::string::npos) << text;
+  const auto json = nlohmann::json::parse(program_.succeed({"backends", "--format", "json"}).out);
+  EXPECT_FALSE(json["instruction_sets"].empty());
+  const auto& all = json["backends"];
+  const auto native =
+      std::ranges::find_if(all, [](const auto& b) { return b["name"] == "native"; });
+  ASSERT_NE(native, all.end());
+  EXPECT_EQ((*native)["id"], 4);
+  EXPECT_EQ((*native)["usable"], true);
+}
+
+TEST_F(CliWords, InfoNamesPlanesAndWhatThereIs) {
+  write_bytes(program_.path("a.raw"),
+              random_texels(map_texture(Format::R16G16B16A16_UNORM, {8, 8, 1}, {8, 8, 1}), 1));
+  program_.succeed({"encode", "-o", "a.gic", "--preset", "fast", "--vk-format",
+                    "R16G16B16A16_UNORM", "--extent", "8x8", "a.raw"});
+  const std::string text = program_.succeed({"info", "a.gic", "--verbose"}).out;
+  EXPECT_EQ(text.find(" high"), std::string::npos) << text;
+  EXPECT_EQ(text.find("updates"), std::string::npos) << "there are none: " << text;
+  EXPECT_EQ(text.find("nan"), std::string::npos) << text;
+  const auto json =
+      nlohmann::json::parse(program_.succeed({"info", "a.gic", "--format", "json"}).out);
+  EXPECT_EQ(json["textures"][0]["space"], "grid");
+  program_.succeed({"encode", "-o", "x.gic", "in"});
+  const Outcome decoded = program_.succeed({"decode", "x.gic", "-o", "out"});
+  EXPECT_EQ(decoded.err.find("do not say"), std::string::npos) << decoded.err;
+  EXPECT_EQ(program_.run({"preview", "x.gic", "-o", "p.png", "--gamma", "10.5"}).exit, 2);
+  program_.succeed({"preview", "x.gic", "-o", "p.png", "--gamma", "10"});
 }
 
 TEST_F(CliWords, OptionsTakeOneValueEach) {

@@ -1,7 +1,10 @@
 // EXR files of every kind that OpenEXR writes: their images come back, byte for byte where the file
 // was written by the same OpenEXR.
 #include "dump/dump.h"
+#include "dump/exr_header.h"
 #include "tools/dump_support.h"
+
+#include <gicodec/textures.h>
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFloatAttribute.h>
@@ -71,6 +74,19 @@ Imf::Header header_of(const std::vector<Made>& channels, const Imath::Box2i& win
                              Imf::Channel(made.type, made.sampling, made.sampling, made.linear));
   }
   return header;
+}
+
+/// Gives a file's first chunk other bytes.
+void replace_chunk(const std::string& path, const std::vector<std::byte>& with) {
+  const ExrPart part = read_exr_header(path).front();
+  auto bytes = file_bytes(path);
+  std::uint64_t at = 0;
+  std::memcpy(&at, &bytes[part.places], sizeof at);
+  at += part.tiled ? 16 : 4;
+  const auto size = static_cast<std::uint32_t>(with.size());
+  std::memcpy(&bytes[at], &size, sizeof size);
+  std::copy(with.begin(), with.end(), bytes.begin() + static_cast<std::ptrdiff_t>(at + 4));
+  write_bytes(path, bytes);
 }
 
 class ExrImages : public testing::Test {
@@ -307,6 +323,85 @@ TEST_F(ExrImages, TableOfPlacesIsMissing) {
   bytes.resize(bytes.size() - 10);
   write_bytes(path_, bytes);
   EXPECT_TRUE(read_error(path_, plain()));
+}
+
+/// OpenEXR would give what its memory held before.
+TEST_F(ExrImages, ChunksOfTooFewSamplesAreDamage) {
+  const std::vector<Made> channels = {{"R"}, {"G"}};
+  const Imath::Box2i window({0, 0}, {39, 29});
+  const auto bytes = [](std::initializer_list<int> values) {
+    std::vector<std::byte> all;
+    for (const int value : values) all.push_back(static_cast<std::byte>(value));
+    return all;
+  };
+  const auto two_zeros = bytes({0x78, 0x9C, 0x63, 0x60, 0, 0, 0, 2, 0, 1});  // by zlib
+  const std::pair<Imf::Compression, std::vector<std::byte>> cases[] = {
+      {Imf::NO_COMPRESSION, bytes({1, 2, 3, 4})},
+      {Imf::RLE_COMPRESSION, bytes({5, 1, -2, 1, 2})},
+      {Imf::ZIPS_COMPRESSION, two_zeros},
+      {Imf::ZIP_COMPRESSION, two_zeros},
+      {Imf::PIZ_COMPRESSION, {}},
+      {Imf::PXR24_COMPRESSION, {}},
+      {Imf::B44_COMPRESSION, {}},
+      {Imf::B44A_COMPRESSION, {}}};
+  for (const auto& [compression, packed] : cases) {
+    for (const bool tiled : {false, true}) {
+      Imf::Header header = header_of(channels, window);
+      header.compression() = compression;
+      if (tiled) {
+        write_tiles(header, channels, Imf::TileDescription(16, 16, Imf::ONE_LEVEL));
+      } else {
+        write_lines(header, channels);
+      }
+      EXPECT_FALSE(read_error(path_, plain())) << compression;
+      for (const auto& with : {packed, std::vector<std::byte>()}) {
+        const auto whole = file_bytes(path_);
+        replace_chunk(path_, with);
+        const auto error = read_error(path_, plain());
+        ASSERT_TRUE(error) << compression << tiled;
+        EXPECT_EQ(error->code(), Exit::bad_input);
+        EXPECT_NE(std::string(error->what()).find("hold fewer than all samples"), std::string::npos)
+            << error->what();
+        write_bytes(path_, whole);
+      }
+    }
+  }
+}
+
+/// Where their places are not written either.
+TEST_F(ExrImages, ChunksAreLookedForWithoutPlaces) {
+  const std::vector<Made> channels = {{"R"}};
+  Imf::Header header = header_of(channels, Imath::Box2i({-3, 5}, {36, 34}));
+  header.compression() = Imf::NO_COMPRESSION;
+  write_lines(header, channels);
+  const ExrPart part = read_exr_header(path_).front();
+  EXPECT_EQ(part.chunk_count(), 30U);
+  auto bytes = file_bytes(path_);
+  std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(part.places), 8 * 30, std::byte{0});
+  write_bytes(path_, bytes);
+  EXPECT_FALSE(read_error(path_, plain()));
+  // The last chunk ends early, and the file with it.
+  bytes.resize(bytes.size() - 2);
+  const std::uint32_t size = 40 * 2 - 2;
+  std::memcpy(&bytes[bytes.size() - size - 4], &size, sizeof size);
+  write_bytes(path_, bytes);
+  const auto error = read_error(path_, plain());
+  ASSERT_TRUE(error);
+  EXPECT_NE(std::string(error->what()).find("texels (-3, 34) to (36, 34)"), std::string::npos)
+      << error->what();
+}
+
+TEST_F(ExrImages, ImagesOfAFileDifferInTheirChannels) {
+  const Dump dump = random_dump(map_texture(Format::R16_SFLOAT, {8, 8, 1}, {8, 8, 1}), 1);
+  const std::vector<Dump> twice = {dump, dump};
+  try {
+    write_dumps(path_, twice);
+    FAIL() << "one would be lost";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("two of its images have a channel R"),
+              std::string::npos)
+        << error.what();
+  }
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 // DDS, KTX2 and raw files: every bit of texels and heads comes back, and nothing else is taken.
 #include "dump/texture_file.h"
+#include "dump/geometry_attributes.h"
+#include "dump/ktx2_format.h"
 
 #include "tools/dump_support.h"
 #include "tools/texture_file_inverse.h"
@@ -291,6 +293,42 @@ class BytesAtPath {
 
 /// Cut off anywhere, or with a bit or a byte that is another: refused, or a texture whose texels
 /// are all there and come back.
+/// Levels begin at multiples of a texel and of four bytes, the smallest first.
+TEST(TextureFile, LevelsOfOddSizesAreAligned) {
+  const TemporaryDirectory directory;
+  TextureHead head;
+  head.texels = {5, 7, 1};
+  head.levels = 3;
+  write_dumps(directory.path("x.ktx2"), random_images(Format::R8_UNORM, head));
+  const auto bytes = file_bytes(directory.path("x.ktx2"));
+  std::uint64_t end = 0;
+  for (std::size_t level = 3; level-- > 0;) {
+    const std::uint64_t offset = word_at(bytes, 80 + 24 * level);
+    EXPECT_EQ(offset % 4, 0U) << level;
+    EXPECT_GE(offset, end);
+    end = offset + word_at(bytes, 80 + 24 * level + 8);
+  }
+  EXPECT_EQ(end, bytes.size());
+}
+
+/// What Khronos' data format specification says of a sample's channel.
+TEST(TextureFile, ChannelsOfCompressedBlocks) {
+  for (const auto& [format, channel] :
+       {std::pair(Format::BC7_UNORM_BLOCK, 0), std::pair(Format::BC3_UNORM_BLOCK, 15),
+        std::pair(Format::ETC2_R8G8B8_UNORM_BLOCK, 2),
+        std::pair(Format::ETC2_R8G8B8A8_UNORM_BLOCK, 15)}) {
+    constexpr std::size_t kFirstSample = 28;  // behind the size and the basic block's head
+    const auto descriptor = ktx2_descriptor(format);
+    EXPECT_EQ(std::to_integer<int>(descriptor[kFirstSample + 3]) & 15, channel);
+  }
+}
+
+TEST(TextureFile, FormatsMayHaveThePrefixOfVulkan) {
+  const Attribute plain{std::string(kFormat), "string", "R8_UNORM"};
+  EXPECT_TRUE(same_meaning(plain, {plain.name, "string", "VK_FORMAT_R8_UNORM"}));
+  EXPECT_FALSE(same_meaning(plain, {plain.name, "string", "VK_FORMAT_R8_SNORM"}));
+}
+
 TEST(TextureFile, TruncatedAndFlippedHeads) {
   const TemporaryDirectory directory;
   const TextureDesc desc = map_texture(Format::R16_SFLOAT, {5, 3, 2}, {8, 8, 1});
@@ -421,6 +459,14 @@ TEST_F(Sidecar, SaysWhatIsWrong) {
     expect_part(message(json), part);
   }
   EXPECT_EQ(message("{\"extent\": [8, 8], \"format\": \"R8_UNORM\"}"), "");
+}
+
+TEST_F(Sidecar, MayHaveAMebibyte) {
+  std::string json = "{\"extent\": [8, 8], \"format\": \"R8_UNORM\"}";
+  json.resize(std::size_t{1} << 20, ' ');
+  EXPECT_EQ(message(json), "");
+  json += ' ';
+  EXPECT_NE(message(json), "");
 }
 
 TEST_F(Sidecar, OfOneFrameOrOfAll) {

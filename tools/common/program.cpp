@@ -1,6 +1,7 @@
 #include "program.h"
 
 #include "dump/file.h"
+#include "dump/memory_reserve.h"
 
 #include <gicodec/version.h>
 
@@ -10,6 +11,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <exception>
 #include <new>
 
 namespace gicodec::tools {
@@ -44,6 +46,15 @@ void catch_signals(Interrupts interrupts) {
   if (hangup.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);  // nohup ignores it.
 }
 
+/// What libraries allocate where no exception may leave: without memory they end the program.
+[[noreturn]] void end_without_memory() {
+  if (!memory_ran_out()) std::abort();
+  remove_temporaries();
+  constexpr char kWords[] = "not enough memory\n";
+  static_cast<void>(!write(STDERR_FILENO, kWords, sizeof kWords - 1));
+  _exit(static_cast<int>(Exit::internal));
+}
+
 int end_by(int signal) {
   std::signal(signal, SIG_DFL);
   std::raise(signal);
@@ -65,6 +76,8 @@ int run_program(Command& app, int argc, char** argv, const std::function<Exit()>
     return static_cast<int>(exit);
   };
   keep_standard_numbers();
+  keep_memory_reserve();
+  std::set_terminate(end_without_memory);
   catch_signals(interrupts);
   try {
     app.version(fmt::format("{} {}{}", app.name(), kVersionString, formats));

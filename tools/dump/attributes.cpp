@@ -1,4 +1,5 @@
 #include "dump/error.h"
+#include "dump/exr_memory.h"
 #include "dump/internal.h"
 #include "dump/texture_file.h"
 
@@ -85,28 +86,6 @@ std::string bytes_of(const Imf::Attribute& value) {
   value.writeValueTo(out, Imf::EXR_VERSION);
   return out.bytes();
 }
-
-class MemoryIn final : public Imf::IStream {
- public:
-  explicit MemoryIn(std::string_view bytes) : IStream("attribute"), bytes_(bytes) {}
-  bool read(char into[], int size) override {
-    if (size < 0 || bytes_.size() - position_ < static_cast<std::size_t>(size)) {
-      throw std::runtime_error("unexpected end");
-    }
-    std::memcpy(into, bytes_.data() + position_, static_cast<std::size_t>(size));
-    position_ += static_cast<std::size_t>(size);
-    return position_ < bytes_.size();
-  }
-  std::uint64_t tellg() override { return position_; }
-  void seekg(std::uint64_t position) override {
-    position_ = std::min(static_cast<std::size_t>(position), bytes_.size());
-  }
-  [[nodiscard]] bool at_end() const { return position_ == bytes_.size(); }
-
- private:
-  std::string_view bytes_;
-  std::size_t position_ = 0;
-};
 
 std::uint32_t word_at(std::string_view bytes, std::size_t index) {
   std::uint32_t word = 0;
@@ -274,6 +253,8 @@ void set_attributes(Imf::Header& header, const Attributes& attributes, const std
       value->readValueFrom(in, static_cast<int>(bytes.size()), Imf::EXR_VERSION);
       if (!in.at_end()) throw std::invalid_argument("more bytes than the type has");
       header.insert(name, *value);
+    } catch (const std::bad_alloc&) {
+      throw;
     } catch (const std::exception& error) {
       fail(Exit::bad_input, "{}: attribute {} of type {} cannot be written: {}", path,
            attribute.name, attribute.type, error.what());

@@ -28,6 +28,9 @@ constexpr std::size_t kMaxName = 255;
 /// No lossless compression makes an image smaller by more; DWA does, which loses bits.
 constexpr std::uint64_t kDwaRatio = 100000;
 
+/// Lines of a chunk by compression: none, rle, zips, zip, piz, pxr24, b44, b44a, dwaa, dwab.
+constexpr std::array<std::uint32_t, 10> kLines = {1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
+
 /// Bytes of a type's value. OpenEXR reads as many whatever the header's size is, and goes on from
 /// there. If the two differ, it would read another header than the one checked here.
 struct TypeSize {
@@ -100,6 +103,12 @@ class HeaderWalk {
     }
     if (parts.empty()) fail(Exit::bad_input, "{}: its EXR header is empty", path_);
     check_image_bytes(bytes_, dwa_ ? kDwaRatio : kMaxRatio, path_);
+    auto places = static_cast<std::uint64_t>(walked_);
+    for (ExrPart& part : parts) {
+      part.in_several = several;
+      part.places = places;
+      places += 8 * part.chunk_count();
+    }
     return parts;
   }
 
@@ -122,8 +131,9 @@ class HeaderWalk {
     const std::uint64_t area = std::uint64_t{part_.width} * part_.height;
     const std::uint64_t all =
         part_.levels > 1 ? area + area / 2 + part_.width + part_.height : area;
-    bytes_ += std::max(all, std::max<std::uint64_t>(lines_ * part_.width, tile_)) * texel_bytes_;
-    tile_ = 0;
+    const std::uint64_t tile = std::uint64_t{part_.tile.x} * part_.tile.y;
+    bytes_ += std::max(all, std::max<std::uint64_t>(lines_ * part_.width, tile)) * texel_bytes_;
+    if (part_.tiled && tile == 0) fail(Exit::bad_input, "{}: its EXR header lacks tiles", path_);
   }
 
   void attribute(const std::string& name) {
@@ -172,7 +182,7 @@ class HeaderWalk {
     }
     part_.round_up = rounding == 1;
     part_.levels = levels == kMipmaps ? 2 : 1;  // Their number follows from the window.
-    tile_ = std::uint64_t{size[0]} * size[1];
+    part_.tile = {size[0], size[1], 1};
   }
 
   /// A list of names, each with type, flags and two sampling steps.
@@ -229,9 +239,7 @@ class HeaderWalk {
     part_.height = static_cast<std::uint32_t>(height);
   }
 
-  /// Lines per block by compression: none, rle, zips, zip, piz, pxr24, b44, b44a, dwaa, dwab.
   void compression(std::string_view bytes) {
-    constexpr std::array<std::uint64_t, 10> kLines = {1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
     const std::size_t number = static_cast<unsigned char>(bytes[0]);
     constexpr std::size_t kHtj2k256 = 10, kHtj2k32 = 11;
     if (number == kHtj2k256 || number == kHtj2k32) {
@@ -243,7 +251,8 @@ class HeaderWalk {
       fail(Exit::bad_input, "{}: its compression, number {}, is unknown; {}", path_, number,
            to_cure(Cure::write_zip));
     }
-    lines_ = std::max(lines_, kLines[number]);
+    part_.compression = static_cast<std::uint8_t>(number);
+    lines_ = std::max<std::uint64_t>(lines_, part_.chunk_lines());
     dwa_ = dwa_ || number >= 8;
   }
 
@@ -298,7 +307,7 @@ class HeaderWalk {
   std::size_t attributes_ = 0;
   ExrPart part_;
   /// The largest values, if an attribute occurs several times.
-  std::uint64_t texel_bytes_ = 0, lines_ = 1, tile_ = 0;
+  std::uint64_t texel_bytes_ = 0, lines_ = 1;
   std::uint64_t bytes_ = 0;  ///< of the samples of all parts
   bool dwa_ = false;
 };
@@ -311,6 +320,19 @@ Grid ExrPart::level_size(std::uint32_t level) const noexcept {
     return static_cast<std::uint32_t>(std::max<std::uint64_t>(1, (all + up) >> level));
   };
   return {side(width), side(height), 1};
+}
+
+std::uint32_t ExrPart::chunk_lines() const noexcept { return kLines[compression]; }
+
+std::uint64_t ExrPart::chunk_count() const noexcept {
+  const auto parts_of = [](std::uint64_t all, std::uint64_t one) { return (all - 1) / one + 1; };
+  if (!tiled) return parts_of(height, chunk_lines());
+  std::uint64_t count = 0;
+  for (std::uint32_t level = 0; level < levels; ++level) {
+    const Grid size = level_size(level);
+    count += parts_of(size.x, tile.x) * parts_of(size.y, tile.y);
+  }
+  return count;
 }
 
 std::int64_t exr_samples(std::int64_t first, std::int64_t last, std::int64_t step) noexcept {

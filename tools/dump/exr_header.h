@@ -33,9 +33,16 @@ struct ExrPart {
   bool tiled = false;
   std::uint32_t levels = 1;  ///< mip levels
   bool round_up = false;     ///< sizes of levels
+  Grid tile;                 ///< texels of one; z = 1
+  std::uint8_t compression = 0;
+  std::uint64_t places = 0;  ///< where the places of its chunks stand in the file, 8 bytes each
+  bool in_several = false;   ///< of a file whose chunks say to which part they belong
 
   /// Width and height of a level; z = 1.
   [[nodiscard]] Grid level_size(std::uint32_t level) const noexcept;
+  /// Lines of a chunk, where it is no tile.
+  [[nodiscard]] std::uint32_t chunk_lines() const noexcept;
+  [[nodiscard]] std::uint64_t chunk_count() const noexcept;
 };
 
 /// Farthest that a data window may begin from 0: attribute exr:origin holds these exactly.

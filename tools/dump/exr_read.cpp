@@ -1,7 +1,9 @@
 #include "dump/cure.h"
 #include "dump/error.h"
+#include "dump/exr_chunks.h"
 #include "dump/exr_images.h"
 #include "dump/exr_types.h"
+#include "dump/memory_reserve.h"
 
 #include <Imath/ImathBox.h>
 #include <OpenEXR/ImfFrameBuffer.h>
@@ -134,6 +136,7 @@ std::vector<Dump> read_exr(const std::string& path, const Hints& hints, bool tex
   const std::vector<ExrPart> parts = read_exr_header(path);
   try {
     const std::vector<ExrImage> images = images_of(parts, hints, path);
+    if (texels) check_exr_chunks(path, parts);
     Imf::MultiPartInputFile file(path.c_str(), 0);
     std::vector<Dump> dumps;
     for (const ExrImage& image : images) {
@@ -152,6 +155,7 @@ std::vector<Dump> read_exr(const std::string& path, const Hints& hints, bool tex
   } catch (const std::bad_alloc&) {
     fail(Exit::internal, "{}: not enough memory", path);
   } catch (const std::exception& error) {
+    if (memory_ran_out()) fail(Exit::internal, "{}: not enough memory", path);
     fail(Exit::bad_input, "{}: cannot be read: {}", path, error.what());
   }
 }

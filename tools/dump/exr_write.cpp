@@ -1,13 +1,17 @@
+#include "dump/cure.h"
 #include "dump/error.h"
+#include "dump/exr_memory.h"
 #include "dump/exr_types.h"
 #include "dump/file.h"
 #include "dump/internal.h"
+#include "dump/memory_reserve.h"
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfCompression.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIO.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfMultiPartOutputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfOutputPart.h>
@@ -31,17 +35,26 @@ class MemoryFile final : public Imf::OStream {
   explicit MemoryFile(const char* name) : OStream(name) {}
   void write(const char bytes[], int size) override {
     const std::size_t end = position_ + static_cast<std::size_t>(size);
-    if (end > bytes_.size()) bytes_.resize(end);
+    try {
+      if (end > bytes_.size()) bytes_.resize(end);
+    } catch (const std::bad_alloc&) {
+      lacks_ = true;  // OpenEXR drops the exception where it closes a file
+      throw;
+    }
     std::memcpy(bytes_.data() + position_, bytes, static_cast<std::size_t>(size));
     position_ = end;
   }
   std::uint64_t tellp() override { return position_; }
   void seekp(std::uint64_t position) override { position_ = static_cast<std::size_t>(position); }
-  [[nodiscard]] std::vector<std::byte> take() { return std::move(bytes_); }
+  [[nodiscard]] std::vector<std::byte> take() {
+    if (lacks_) throw std::bad_alloc();
+    return std::move(bytes_);
+  }
 
  private:
   std::vector<std::byte> bytes_;
   std::size_t position_ = 0;
+  bool lacks_ = false;  ///< something that was to be written
 };
 
 bool keeps_every_bit(Imf::Compression compression) {
@@ -160,6 +173,10 @@ Part part_of(std::span<const Dump> images, const std::string& path) {
         continue;
       }
       const std::string name = channel_name(image.info.channels, record.format, i);
+      if (part.header.channels().findChannel(name_of_text(name)) != nullptr) {
+        fail(Exit::bad_input, "{}: two of its images have a channel {}; {}", path, name,
+             to_cure(Cure::raw_files));
+      }
       part.header.channels().insert(name_of_text(name),
                                     Imf::Channel(pixel_type(image.info.channels.types[i]), steps.x,
                                                  steps.y, is_linear(first.attributes, name)));
@@ -274,6 +291,15 @@ void write_parts(MemoryFile& memory, std::vector<Part>& parts, const std::string
   }
 }
 
+/// Throws if chunks are missing: OpenEXR loses some errors of its compressors.
+void require_chunks(std::span<const std::byte> bytes, std::size_t parts) {
+  MemoryIn in({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  Imf::MultiPartInputFile file(in, 0);
+  for (std::size_t part = 0; part < parts; ++part) {
+    if (!file.partComplete(static_cast<int>(part))) throw std::bad_alloc();
+  }
+}
+
 }  // namespace
 
 std::vector<std::byte> to_exr(std::span<const Dump> images, const std::string& path_for_messages) {
@@ -283,12 +309,15 @@ std::vector<std::byte> to_exr(std::span<const Dump> images, const std::string& p
     std::vector<Part> parts = parts_of(images, path);
     MemoryFile memory(path.c_str());
     write_parts(memory, parts, path);
-    return memory.take();
+    std::vector<std::byte> bytes = memory.take();
+    require_chunks(bytes, parts.size());
+    return bytes;
   } catch (const Error&) {
     throw;
   } catch (const std::bad_alloc&) {
     fail(Exit::internal, "{}: not enough memory", path);
   } catch (const std::exception& error) {
+    if (memory_ran_out()) fail(Exit::internal, "{}: not enough memory", path);
     fail(Exit::bad_input, "{}: cannot be written as EXR: {}", path, error.what());
   }
 }

@@ -12,6 +12,7 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <mutex>
 #include <random>
 #include <system_error>
 #include <utility>
@@ -237,6 +238,38 @@ bool shares_standard_error(const std::string& path) {
   return same_file(output, errors);
 }
 
+namespace {
+
+/// AtomicFiles with a temporary file.
+std::mutex unfinished_mutex;
+AtomicFile* unfinished = nullptr;
+
+}  // namespace
+
+void AtomicFile::list() noexcept {
+  const std::lock_guard lock(unfinished_mutex);
+  next_ = std::exchange(unfinished, this);
+}
+
+std::string AtomicFile::leave() noexcept {
+  const std::lock_guard lock(unfinished_mutex);
+  for (AtomicFile** link = &unfinished; *link != nullptr; link = &(*link)->next_) {
+    if (*link != this) continue;
+    *link = next_;
+    break;
+  }
+  return std::exchange(temporary_, {});
+}
+
+void remove_temporaries() noexcept {
+  // A thread may hold it that will never go on.
+  const std::unique_lock lock(unfinished_mutex, std::try_to_lock);
+  if (!lock) return;
+  for (const AtomicFile* file = unfinished; file != nullptr; file = file->next_) {
+    if (file->owns_name()) unlink(file->temporary_.c_str());
+  }
+}
+
 AtomicFile::AtomicFile(std::string path, Existing existing, Temporary temporary)
     : path_(std::move(path)), existing_(existing) {
   if (path_.find('\0') != std::string::npos) {
@@ -288,11 +321,15 @@ void AtomicFile::open_temporary(Temporary temporary) {
     errno = code;
     fail_errno("cannot be written");
   }
+  list();
 }
 
 AtomicFile::~AtomicFile() {
   // In this order, because a partial file is locked until it is closed.
-  if (!temporary_.empty() && owns_name()) unlink(temporary_.c_str());
+  if (!temporary_.empty()) {
+    if (owns_name()) unlink(temporary_.c_str());
+    static_cast<void>(leave());
+  }
   if (stream_ != nullptr && stream_ != stdout) std::fclose(stream_);
 }
 
@@ -309,25 +346,27 @@ void AtomicFile::write(std::span<const std::byte> bytes) {
   }
 }
 
-void AtomicFile::commit() {
+void AtomicFile::sync() {
   if (std::fflush(stream_) != 0) fail_errno("cannot be written");
+  if (!temporary_.empty() && fsync(fileno(stream_)) != 0) fail_errno("cannot be written");
+}
+
+void AtomicFile::commit() {
+  sync();
   if (stream_ == stdout) return;
   if (!temporary_.empty()) {
-    if (fsync(fileno(stream_)) != 0) fail_errno("cannot be written");
     if (!owns_name()) {
-      fail(Exit::io, "{}: another program has taken its place; nothing is replaced",
-           std::exchange(temporary_, {}));
+      fail(Exit::io, "{}: another program has taken its place; nothing is replaced", leave());
     }
     if (rename_to(temporary_, target_, existing_) != 0) {
       if (errno == EEXIST && kept_) {
         fail(Exit::io, "{}: has appeared meanwhile{}; the result is {}", path_,
-             existing_ == Existing::container ? " and is no .gic container" : "",
-             std::exchange(temporary_, {}));
+             existing_ == Existing::container ? " and is no .gic container" : "", leave());
       }
       if (errno == EEXIST) fail_existing(path_, existing_);
       fail_errno("cannot be renamed to");
     }
-    temporary_.clear();
+    static_cast<void>(leave());
     sync_directory(fs::path(target_).parent_path());
   }
   std::FILE* stream = std::exchange(stream_, nullptr);
@@ -343,30 +382,6 @@ void write_file(const std::string& path, std::span<const std::byte> bytes, Exist
   AtomicFile file(path, existing);
   file.write(bytes);
   file.commit();
-}
-
-void make_directory(const std::string& path) {
-  std::error_code error;
-  fs::create_directories(path, error);
-  std::error_code other;
-  if (fs::is_directory(path, other)) return;
-  const bool there = !error || fs::exists(path, other);
-  fail(Exit::io, "{}: cannot make this directory: {}", path,
-       there ? "a file of this name exists; name a folder" : error.message());
-}
-
-OutputDirectory::OutputDirectory(std::string path) : path_(std::move(path)) {
-  if (path_ == "-")
-    fail(Exit::usage,
-         "-o -: files go to a folder, not to standard output; ./- names such a folder");
-  std::error_code error;
-  made_ = !fs::exists(path_, error);
-  make_directory(path_);
-}
-
-OutputDirectory::~OutputDirectory() {
-  std::error_code not_empty;
-  if (made_) fs::remove(path_, not_empty);
 }
 
 }  // namespace gicodec::tools

@@ -82,15 +82,19 @@ class AtomicFile {
   /// The stream to write to; this object owns it.
   [[nodiscard]] std::FILE* stream() noexcept { return stream_; }
   void write(std::span<const std::byte> bytes);
-  /// Flushes, syncs and renames the file. Call it at most once.
+  /// Writes all to the disk, so that commit() fails only if the name cannot be had.
+  void sync();
+  /// Syncs and renames the file. Call it at most once.
   void commit();
   /// Instead of commit(): keeps the temporary file and returns its name; empty if there is none.
   /// Call it at most once.
-  [[nodiscard]] std::string leave() noexcept { return std::exchange(temporary_, {}); }
+  [[nodiscard]] std::string leave() noexcept;
 
  private:
+  friend void remove_temporaries() noexcept;
   [[noreturn]] void fail_errno(const char* what) const;
   void open_temporary(Temporary temporary);
+  void list() noexcept;
   /// True if the temporary name still belongs to the opened file.
   [[nodiscard]] bool owns_name() const;
 
@@ -100,7 +104,12 @@ class AtomicFile {
   Existing existing_;
   bool kept_ = false;  ///< Temporary::partial
   std::FILE* stream_ = nullptr;
+  AtomicFile* next_ = nullptr;  ///< of all that have a temporary file
 };
+
+/// For a program that cannot go on: removes the temporary files of every AtomicFile. Allocates
+/// nothing.
+void remove_temporaries() noexcept;
 
 /// Throws Error of Exit::usage if `path` is a file that is not such a report, by its first bytes
 /// (at most 64), so that a report replaces only reports.
@@ -109,20 +118,5 @@ void check_report(const std::string& path, bool (*is_report)(std::string_view he
 /// Writes a whole file by AtomicFile.
 void write_file(const std::string& path, std::span<const std::byte> bytes,
                 Existing existing = Existing::refuse);
-/// Makes a directory and its parents. Throws Error of Exit::io on failure.
-void make_directory(const std::string& path);
-
-/// make_directory() for results. The destructor removes an empty directory that it made.
-class OutputDirectory {
- public:
-  explicit OutputDirectory(std::string path);
-  OutputDirectory(const OutputDirectory&) = delete;
-  OutputDirectory& operator=(const OutputDirectory&) = delete;
-  ~OutputDirectory();
-
- private:
-  std::string path_;
-  bool made_ = false;
-};
 
 }  // namespace gicodec::tools

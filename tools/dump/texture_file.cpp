@@ -13,6 +13,7 @@
 #include <cerrno>
 #include <filesystem>
 #include <system_error>
+#include <utility>
 
 namespace gicodec::tools {
 namespace {
@@ -113,21 +114,31 @@ std::vector<std::byte> read_slices(TextureFile& file, const TextureHead& head, I
   return texels;
 }
 
-/// Writes the sidecar; one that all frames share is written with the first.
-void write_sidecar(const std::string& path, const DumpInfo& info, Existing existing) {
-  const std::string text = raw_sidecar(info, path);
-  if (text.empty()) return;
+/// The name of a sidecar to write and its text; no text if it follows from the texels, or if the
+/// file there, which all frames may share, has it already.
+std::pair<std::string, std::string> missing_sidecar(const std::string& path, const DumpInfo& info) {
+  std::string text = raw_sidecar(info, path);
   const Attribute* where = find_attribute(info.attributes, kRawSidecar);
   const bool shared = where != nullptr && where->value == "shared";
-  const std::string sidecar = raw_sidecar_path(path, shared);
-  const auto bytes = std::as_bytes(std::span(text));
+  std::string sidecar = raw_sidecar_path(path, shared);
   std::error_code error;
-  if (std::filesystem::file_size(sidecar, error) == bytes.size() && !error) {
+  if (!text.empty() && std::filesystem::file_size(sidecar, error) == text.size() && !error) {
     TextureFile old(sidecar);
-    if (std::ranges::equal(old.read(0, bytes.size()), bytes)) return;
+    if (std::ranges::equal(old.read(0, text.size()), std::as_bytes(std::span(text)))) text.clear();
   }
-  require_place(sidecar);
-  write_file(sidecar, bytes, existing);
+  return {std::move(sidecar), std::move(text)};
+}
+
+/// Both files or none.
+void write_with_sidecar(AtomicFile& texels, const std::string& path, const std::string& text,
+                        Existing existing) {
+  require_place(path);
+  AtomicFile sidecar(path, existing);
+  sidecar.write(std::as_bytes(std::span(text)));
+  sidecar.sync();
+  texels.sync();
+  texels.commit();
+  sidecar.commit();
 }
 
 }  // namespace
@@ -302,9 +313,9 @@ void write_texture_file(const std::string& path, ImageKind kind, std::span<const
   }
   AtomicFile file(path, existing);
   file.write(images.front().texels);
-  // After the steps that fail most often, so that no sidecar is left without texels.
-  write_sidecar(path, images.front().info, existing);
-  file.commit();
+  const auto [sidecar, text] = missing_sidecar(path, images.front().info);
+  if (text.empty()) return file.commit();
+  write_with_sidecar(file, sidecar, text, existing);
 }
 
 std::vector<std::string> files_of(const std::string& path) {

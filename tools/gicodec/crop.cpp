@@ -3,6 +3,7 @@
 #include "common/stored_texture.h"
 #include "dump/block_place.h"
 #include "dump/cure.h"
+#include "dump/directory.h"
 #include "dump/dump.h"
 #include "dump/file.h"
 #include "dump/geometry_attributes.h"

@@ -9,6 +9,7 @@
 #include "common/frame_range.h"
 #include "common/volume_words.h"
 #include "dump/cure.h"
+#include "dump/directory.h"
 #include "dump/dump.h"
 #include "dump/file.h"
 #include "dump/texture_file.h"
@@ -67,18 +68,18 @@ void check_numbered(const StoredTexture& texture, std::optional<std::uint64_t>& 
 void keep_original(const std::string& path, const StoredTexture& texture, const Dump& image) {
   const std::string lacks = texture.lacks();
   if (lacks.empty() || !std::filesystem::exists(path)) return;
-  std::optional<Dump> old;
+  std::string unread;
   try {
-    old = read_dump(path, hints_of(texture.info));
-  } catch (const Error&) {
-    return;  // not a dump of this texture
+    const Dump old = read_dump(path, hints_of(texture.info));
+    if (image.texels == old.texels && old.info.attributes == image.info.attributes &&
+        old.info.lost.empty()) {
+      return;
+    }
+  } catch (const Error& error) {
+    unread = fmt::format(" (it cannot be compared: {})", error.what());
   }
-  if (image.texels == old->texels && old->info.attributes == image.info.attributes &&
-      old->info.lost.empty()) {
-    return;
-  }
-  fail(Exit::io, "{}: may be the original of texture {}, of which the container lacks {}; {}", path,
-       texture.name, lacks, to_cure(Cure::other_folder));
+  fail(Exit::io, "{}: may be the original of texture {}, of which the container lacks {}{}; {}",
+       path, texture.name, lacks, unread, to_cure(Cure::other_folder));
 }
 
 /// Writes the file of a frame's textures that are its images.
@@ -88,7 +89,9 @@ void write_file_of(const ContainerInput& input, std::span<const std::size_t> tex
   for (const std::size_t id : textures) {
     images.push_back({input.textures()[id].decoded_info(input.frame()), input.texels(id)});
   }
-  check_output(path, inputs, overwrite_if(overwrite));
+  for (const std::string& file : files_of(path)) {
+    check_output(file, inputs, file == path ? overwrite_if(overwrite) : Existing::replace);
+  }
   for (std::size_t i = 0; overwrite && i < images.size(); ++i) {
     keep_original(path, input.textures()[textures[i]], images[i]);
   }

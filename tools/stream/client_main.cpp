@@ -6,6 +6,7 @@
 #include "common/cli.h"
 #include "common/program.h"
 #include "ddgi/scene_id.h"
+#include "dump/directory.h"
 #include "dump/dump.h"
 #include "dump/error.h"
 #include "dump/file.h"

@@ -1,0 +1,40 @@
+#include "dump/directory.h"
+
+#include "dump/error.h"
+
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+namespace gicodec::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+}  // namespace
+
+void make_directory(const std::string& path) {
+  std::error_code error;
+  fs::create_directories(path, error);
+  std::error_code other;
+  if (fs::is_directory(path, other)) return;
+  const bool there = !error || fs::exists(path, other);
+  fail(Exit::io, "{}: cannot make this directory: {}", path,
+       there ? "a file of this name exists; name a folder" : error.message());
+}
+
+OutputDirectory::OutputDirectory(std::string path) : path_(std::move(path)) {
+  if (path_ == "-")
+    fail(Exit::usage,
+         "-o -: files go to a folder, not to standard output; ./- names such a folder");
+  std::error_code error;
+  made_ = !fs::exists(path_, error);
+  make_directory(path_);
+}
+
+OutputDirectory::~OutputDirectory() {
+  std::error_code not_empty;
+  if (made_) fs::remove(path_, not_empty);
+}
+
+}  // namespace gicodec::tools
