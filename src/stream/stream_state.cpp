@@ -16,14 +16,6 @@ StreamState::StreamState(const StreamState& other)
   for (const BlockId id : blocks_) history_->hold(id);
 }
 
-StreamState& StreamState::operator=(StreamState other) noexcept {
-  std::swap(chain, other.chain);
-  std::swap(history_, other.history_);
-  std::swap(blocks_, other.blocks_);
-  std::swap(moved_, other.moved_);
-  return *this;
-}
-
 StreamState::~StreamState() {
   for (const BlockId id : blocks_) history_->release(id);
 }

@@ -19,7 +19,7 @@ class StreamState {
   StreamState(BlockHistory& history, std::uint32_t blocks, PacketChain chain);
   StreamState(const StreamState& other);
   StreamState(StreamState&& other) noexcept = default;
-  StreamState& operator=(StreamState other) noexcept;
+  StreamState& operator=(const StreamState&) = delete;
   ~StreamState();
 
   /// The contents of each block.

@@ -366,6 +366,33 @@ TEST_F(ServerTest, ViewpointsAreSentInASession) {
   EXPECT_EQ(std::get<Viewpoint>(*read_message(said[0])).time, 7);
 }
 
+/// What a client has acknowledged, updates build on.
+TEST_F(ServerTest, UpdatesBuildOnWhatWasAcknowledged) {
+  make();
+  Client client = make_client();
+  const ConnectionId connection = join(client);
+  for (int i = 0; i < 3; ++i) {
+    exchange(connection, client);
+    update();
+  }
+  exchange(connection, client);
+  texture_.fill_block(3, Fill::noise, random_);
+  ASSERT_EQ(server_->publish(0, 0, std::as_const(texture_).view()), Status::ok);
+  now_ += 0.1;
+  ASSERT_EQ(server_->update(now_, now_), Status::ok);
+  std::size_t packets = 0;
+  for (const Message& message : joined(server_->take_messages(connection))) {
+    const auto read = *read_message(message);
+    for (const auto& part : std::get<UpdateMessage>(read).parts) {
+      ++packets;
+      EXPECT_EQ(peek(part.packet)->blocks, 1U);
+      EXPECT_FALSE(is_keyframe(peek(part.packet)->type));
+      EXPECT_FALSE(peek(part.packet)->type == PacketType::intra);
+    }
+  }
+  EXPECT_EQ(packets, 1U);
+}
+
 TEST_F(ServerTest, RatesBoundAnUpdate) {
   constexpr std::uint32_t kRate = 2000;
   ServerOptions options;

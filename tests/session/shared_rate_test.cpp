@@ -214,5 +214,23 @@ RC_GTEST_PROP(SharedRate, TurnsAreNested,
   RC_ASSERT(std::abs(share - static_cast<double>(slow.share())) < 0.05);
 }
 
+/// The first packets are guessed, later ones measured.
+TEST(SharedRate, LearnsWhatStreamsTake) {
+  SharedRate rate(0);
+  constexpr Budget kBudget{0, 1000};
+  constexpr std::size_t kTen = 10, kBytes = 3000;
+  rate.choose(kBudget, kTen, kBytes);
+  EXPECT_LT(rate.share(), 0.2F);
+  for (int update = 0; update < 100; ++update) {
+    rate.choose(kBudget, kTen, kBytes);
+    rate.sent(kTen, kTen * 20, kTen);
+  }
+  rate.choose(kBudget, kTen, kBytes);
+  EXPECT_EQ(rate.share(), 1);
+  for (int update = 0; update < 100; ++update) rate.sent(kTen, kTen * 400, kTen);
+  rate.choose(kBudget, kTen, kBytes);
+  EXPECT_NEAR(rate.share(), 0.25F, 0.01F);
+}
+
 }  // namespace
 }  // namespace gicodec

@@ -224,6 +224,45 @@ TEST_F(CliImages, InfoSaysWhatAFileHolds) {
               "\"name\": \"nz.mip1\"");
 }
 
+/// Long values are cut, and how long they are is said.
+TEST_F(CliImages, InfoShowsAttributes) {
+  const TextureDesc desc = map_texture(Format::R16_SFLOAT, {8, 8, 1}, {8, 8, 1});
+  Dump dump{make_info(desc), random_texels(desc, 1)};
+  set_attribute(dump.info.attributes, {"short", "string", std::string(60, 's')});
+  set_attribute(dump.info.attributes, {"long", "string", std::string(61, 'l')});
+  set_attribute(dump.info.attributes, {"other", "mine", "0x" + std::string(100, 'a')});
+  set_attribute(dump.info.attributes, {"compression", "compression", "0x00"});
+  write("x.exr", {&dump, 1});
+  const std::string text = program_.succeed({"info", "in/x.exr"}).out;
+  expect_part(text, "short: " + std::string(60, 's') + "\n");
+  expect_part(text, "long: " + std::string(60, 'l') + "... (61 bytes)\n");
+  expect_part(text, "other: 0x" + std::string(58, 'a') + "... (50 bytes)\n");
+  expect_part(text, "compression: none\n");
+}
+
+/// A still is of the first frame, whatever its number.
+TEST_F(CliImages, StillsBesideLaterFramesAreVerified) {
+  const TextureDesc desc = map_texture(Format::R16_SFLOAT, {8, 8, 1}, {8, 8, 1});
+  for (const char* name : {"a.0005.exr", "a.0006.exr", "sky.exr"}) {
+    const Dump dump{make_info(desc), random_texels(desc, static_cast<std::uint32_t>(name[3]))};
+    write(name, {&dump, 1});
+  }
+  program_.succeed({"encode", "-o", "x.gic", "in"});
+  expect_part(program_.succeed({"verify", "x.gic", "in"}).out, "3 of 3 files");
+}
+
+TEST_F(CliImages, FlagsNameTexturesOfBothSidesOfAComparison) {
+  for (const char* name : {"l.raw", "r.raw"})
+    write_bytes(program_.path(name), std::vector<std::byte>(32));
+  program_.succeed({"compare", "l.raw", "r.raw", "--vk-format", "l=R8G8_UNORM", "--vk-format",
+                    "r=R8G8_UNORM", "--extent", "4x4"});
+  EXPECT_EQ(program_
+                .run({"compare", "l.raw", "r.raw", "--vk-format", "R8G8_UNORM", "--extent", "4x4",
+                      "--block", "none=4x4x1"})
+                .exit,
+            2);
+}
+
 TEST_F(CliImages, NegativeFramesAndStillsComeBack) {
   const TextureDesc desc = map_texture(Format::R16_SFLOAT, {5, 3, 1}, {8, 8, 1});
   std::uint32_t seed = 0;
