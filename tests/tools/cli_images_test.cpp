@@ -249,6 +249,7 @@ TEST_F(CliImages, StillsBesideLaterFramesAreVerified) {
   }
   program_.succeed({"encode", "-o", "x.gic", "in"});
   expect_part(program_.succeed({"verify", "x.gic", "in"}).out, "3 of 3 files");
+  expect_part(program_.run({"verify", "x.gic", "in/sky.exr"}).out, "1 of ");
 }
 
 TEST_F(CliImages, FlagsNameTexturesOfBothSidesOfAComparison) {

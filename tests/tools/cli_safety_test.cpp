@@ -69,6 +69,12 @@ TEST_F(CliSafety, DecodeReplacesOnlyWhenTold) {
   program_.succeed({"compare", "in", "out"});
 }
 
+TEST_F(CliSafety, FilesDoNotGoToStandardOutput) {
+  expect_refused(Exit::usage, {"decode", "x.gic", "-o", "-"}, {"./- names such a folder"});
+  program_.succeed({"decode", "x.gic", "-o", "./-"});
+  EXPECT_EQ(program_.files("-").size(), 4U);
+}
+
 TEST_F(CliSafety, DecodeKeepsWhatIsNoFile) {
   program_.succeed({"encode", "-o", "y.gic", dumps_[0]});
   const std::string file = fs::path(dumps_[0]).filename(), path = "out/" + file;

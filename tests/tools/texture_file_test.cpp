@@ -329,6 +329,15 @@ TEST(TextureFile, FormatsMayHaveThePrefixOfVulkan) {
   EXPECT_FALSE(same_meaning(plain, {plain.name, "string", "VK_FORMAT_R8_SNORM"}));
 }
 
+TEST(TextureFile, ADdsFileOfItsFirstBytes) {
+  const TemporaryDirectory directory;
+  for (std::size_t size = 0; size < 8; ++size) {
+    write_bytes(directory.path("x.dds"),
+                std::as_bytes(std::span(std::string_view("DDS \x7C\0\0\0", 8)).first(size)));
+    expect_part(message_of(directory.path("x.dds")), size < 4 ? "no" : "truncated");
+  }
+}
+
 TEST(TextureFile, TruncatedAndFlippedHeads) {
   const TemporaryDirectory directory;
   const TextureDesc desc = map_texture(Format::R16_SFLOAT, {5, 3, 2}, {8, 8, 1});
