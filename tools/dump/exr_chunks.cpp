@@ -40,9 +40,10 @@ std::uint64_t bytes_of(const ExrPart& part, const Window& window) {
 std::uint64_t unpacked_runs(std::span<const std::byte> packed) {
   std::uint64_t bytes = 0;
   while (!packed.empty()) {
-    const int count = static_cast<signed char>(packed[0]);
-    const auto taken = static_cast<std::size_t>(count < 0 ? 1 - count : 2);
-    bytes += static_cast<std::uint64_t>(count < 0 ? -count : count + 1);
+    const unsigned head = std::to_integer<unsigned>(packed[0]);
+    const bool plain = head > 127;
+    const std::size_t count = plain ? 256 - head : head + 1, taken = plain ? count + 1 : 2;
+    bytes += count;
     packed = packed.subspan(std::min(taken, packed.size()));
   }
   return bytes;
