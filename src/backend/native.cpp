@@ -14,6 +14,7 @@ class NativeEncoder final : public BackendEncoder {
   NativeEncoder(const TextureDesc& desc, const BackendSettings& settings)
       : desc_(desc), isa_(settings.isa) {
     settings_.chunk.strong = settings.preset == "strong";
+    settings_.chunk.turbo = settings.preset == "turbo";
     settings_.threads = settings.threads;
     if (settings.chunk != 0) settings_.box = native::default_box(desc.grid, settings.chunk);
   }
@@ -56,8 +57,8 @@ Result<std::unique_ptr<BackendEncoder>> NativeBackend::make_encoder(
   return guarded([&]() -> Result<std::unique_ptr<BackendEncoder>> {
     const Status status = validate(desc);
     if (status != Status::ok) return status;
-    const bool known =
-        settings.preset.empty() || settings.preset == "fast" || settings.preset == "strong";
+    const bool known = settings.preset.empty() || settings.preset == "turbo" ||
+                       settings.preset == "fast" || settings.preset == "strong";
     if (!known || settings.level != 0 || settings.chunk > native::kMaxChunkProbes ||
         !is_valid(settings.threads) || !is_supported(settings.isa)) {
       return Status::invalid_settings;

@@ -19,6 +19,11 @@ GICODEC_INLINE B8 set8(int a) {
 GICODEC_INLINE void store(std::uint8_t* p, B8 a) {
   GICODEC_EACH8 store_reg(p + i * static_cast<int>(sizeof(RegB)), a.v[i]);
 }
+GICODEC_INLINE B8 load_bytes(const std::uint8_t* p) {
+  B8 r;
+  GICODEC_EACH8 r.v[i] = load_reg(p + i * static_cast<int>(sizeof(RegB)));
+  return r;
+}
 GICODEC_INLINE M8 at_most(B8 a, B8 b) {
   M8 m;
   GICODEC_EACH8 m.v[i] = GICODEC_V(cmpeq_epi8)(GICODEC_V(min_epu8)(a.v[i], b.v[i]), a.v[i]);

@@ -157,6 +157,7 @@ GICODEC_INLINE B8 add_where(M8 m, B8 a, int n) {
 GICODEC_INLINE Byte32 load32(const std::uint8_t* p) {
   return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(p));
 }
+GICODEC_INLINE B8 load_bytes(const std::uint8_t* p) { return {load32(p)}; }
 GICODEC_INLINE B8 lookup16(const std::uint8_t (&table)[16], B8 index) {
   const __m128i entries = _mm_loadu_si128(reinterpret_cast<const __m128i*>(table));
   return {_mm256_shuffle_epi8(_mm256_broadcastsi128_si256(entries), index.v)};

@@ -4,6 +4,7 @@
 #include "native/reference_entropy.h"
 #include "native/reference_model.h"
 #include "native/reference_packing.h"
+#include "native/reference_tokens.h"
 
 #include <algorithm>
 #include <array>
@@ -185,6 +186,7 @@ class Decoder {
       return in.at_end();
     }
     if (first == 2) return adaptive_chunk(blocks, in.take(in.left()));
+    if ((first & 3) == 3) return token_chunk(blocks, first, in);
     if ((first & 3) != 1 || (first >> 2 & 7) > 5) return false;
     if (std::uint64_t{box_[0]} * box_[1] * box_[2] > 4096) return false;
     std::size_t raw = 0;
@@ -255,6 +257,41 @@ class Decoder {
     if (!records) return false;
     for (std::size_t i = 0; i < blocks.size(); ++i) raw_[blocks[i]] = std::move((*records)[i]);
     return true;
+  }
+
+  bool token_chunk(const std::vector<std::uint32_t>& blocks, unsigned first, Bytes& in) {
+    if (desc_.presence != Presence::all || desc_.model == Model::unordered) return false;
+    if (std::uint64_t{box_[0]} * box_[1] * box_[2] > 4096) return false;
+    if (update() && (first & 4) != 0) return false;
+    const RecordPlanes planes(desc_);  // without steps
+    const Values zeros = planes.unpack(std::vector<std::byte>(block_bytes_).data());
+    std::map<std::uint32_t, Values> done;
+    const auto around = [&](std::uint32_t block) {
+      TokenAround a{zeros, {zeros, zeros, zeros}};
+      if (update()) a.reference = planes.unpack(mirror_.data() + block * block_bytes_);
+      constexpr std::array<unsigned, 3> kXZY{0, 2, 1};
+      std::array<std::optional<std::uint32_t>, 3> beside;
+      for (unsigned i = 0; i < 3; ++i) {
+        const auto n = beside[i] = neighbour(block, kXZY[i]);
+        if (n && done.contains(*n)) {
+          a.copies[i] = done.at(*n);
+        } else if (n && !mirror_.empty() && received_[*n] != 0) {
+          a.copies[i] = planes.unpack(mirror_.data() + *n * block_bytes_);
+        }
+      }
+      for (const unsigned i : {0U, 2U, 1U}) {
+        const bool refers = (first & 4) != 0 && beside[i] && done.contains(*beside[i]);
+        if (refers) a.reference = done.at(*beside[i]);
+      }
+      return a;
+    };
+    TokenReader reader(planes, desc_.block.x, records_, blocks.size());
+    if (!reader.read(first, in)) return false;
+    for (const auto block : blocks) {
+      done[block] = reader.next(around(block));
+      raw_[block] = planes.pack(done[block]);
+    }
+    return reader.finished();
   }
 
   /// The received blocks of the chunk's box that are not in the update.

@@ -79,6 +79,43 @@ TEST(NativeRoundTrip, FreshUpdatesCostLessThanKeyframes) {
   }
 }
 
+/// Token chunks of any records, shapes and boxes.
+RC_GTEST_PROP(NativeRoundTrip, AnyTextureByTokens, (std::uint64_t seed)) {
+  test::Random random(seed);
+  TextureDesc desc = small_desc(random);
+  if (test::chance(random, 3)) {
+    desc.guard_band = 0;
+    desc.block = {static_cast<std::uint8_t>(test::pick(random, 1, 40)),
+                  static_cast<std::uint8_t>(test::pick(random, 1, 9)),
+                  static_cast<std::uint8_t>(test::pick(random, 1, 5))};
+  }
+  const auto content = test::kContents[random() % std::size(test::kContents)];
+  native::PayloadSettings settings;
+  settings.chunk.turbo = true;
+  settings.chunk.streams = 4U << test::pick(random, 0, 4);
+  if (test::chance(random, 2)) {
+    settings.box = {test::pick(random, 1, desc.grid.x), test::pick(random, 1, desc.grid.y),
+                    test::pick(random, 1, desc.grid.z)};
+  }
+  check_everything(any_update(desc, content, test::pick(random, 1, 4), seed), settings);
+  RC_ASSERT(!testing::Test::HasFailure());
+}
+
+TEST(NativeRoundTrip, EveryFormatAndContentByTokens) {
+  native::PayloadSettings settings;
+  settings.chunk.turbo = true;
+  test::Sweep sweep;
+  for (const auto& format : test::distinct_formats()) {
+    const TextureDesc desc = probe_texture(format.record, {6, 4, 5}, 6, 1);
+    for (const auto content : test::kContents) {
+      for (const bool keyframe : {true, false}) {
+        if (!sweep.takes()) continue;
+        check_everything(test::make_update(desc, content, keyframe, 1, 5), settings);
+      }
+    }
+  }
+}
+
 /// Blocks of any shape, on grids and in pools, whatever their neighbours are to them.
 RC_GTEST_PROP(NativeRoundTrip, AnyShape, (std::uint64_t seed)) {
   test::Random random(seed);

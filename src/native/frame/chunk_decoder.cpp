@@ -4,6 +4,7 @@
 #include "native/frame/statistics.h"
 #include "native/planes/mode_search.h"
 #include "native/planes/tables.h"
+#include "native/tokens/token_head.h"
 
 #include <algorithm>
 #include <cstring>
@@ -96,6 +97,7 @@ Status check_chunk(const TextureDesc& desc, const PlaneLayout& layout, bool upda
     return size != 0 && size % block_bytes(desc) == 0 ? Status::ok : Status::corrupt;
   }
   if (first == kAdaptiveChunk) return Status::ok;
+  if ((first & 3) == kTokenChunk) return check_tokens(desc, first, reader.rest());
   Input in{};
   std::size_t table_bytes = 0;
   return read_modelled(layout, update, first, reader, scratch, in, table_bytes);
@@ -122,6 +124,14 @@ Status decode_chunk(const Update& u, std::span<const std::uint32_t> positions,
       statistics->word_bytes += bytes.size() - 1;
     }
     return decode_adaptive(u, positions, reader.rest(), texels, w.models);
+  }
+  if ((first & 3) == kTokenChunk) {
+    if (statistics != nullptr) {
+      ++statistics->head_bytes;
+      statistics->word_bytes += bytes.size() - 1;
+    }
+    if (std::size_t{u.box.x} * u.box.y * u.box.z > kMaxChunkProbes) return Status::corrupt;
+    return decode_tokens(u, positions, first, reader.rest(), texels, w.tokens);
   }
   if (std::size_t{u.box.x} * u.box.y * u.box.z > kMaxChunkProbes) return Status::corrupt;
   ChunkHead& head = w.head;

@@ -278,6 +278,12 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
     }
     return;
   }
+  if (settings.turbo && takes_tokens(u.desc)) {
+    if (!encode_tokens(u, positions, texels, settings.streams, raw_size, w.tokens, out)) {
+      encode_raw(u, positions, texels, out);
+    }
+    return;
+  }
   const auto worth =
       static_cast<unsigned>(std::clamp<std::size_t>(raw_size / kMinLaneBytes, 1, blocks));
   const unsigned planned = few                 ? std::min(std::bit_ceil(worth), kLanes)

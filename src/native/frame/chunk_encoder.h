@@ -7,9 +7,11 @@
 namespace gicodec::native {
 
 struct EncodeSettings {
-  bool strong = false;  ///< exact mode search and table choice
-  int set = -1;         ///< table set to use in all places, or the encoder's choice
-  unsigned lanes = 0;   ///< 0: the encoder's choice; more where enough_lanes() says so
+  bool strong = false;   ///< exact mode search and table choice
+  bool turbo = false;    ///< token chunks
+  unsigned streams = 4;  ///< of token chunks
+  int set = -1;          ///< table set to use in all places, or the encoder's choice
+  unsigned lanes = 0;    ///< 0: the encoder's choice; more where enough_lanes() says so
   /// Sees every group's steps, for training and statistics; called from the encoding threads.
   std::function<void(const Step* begin, const Step* end)> observe;
 };

@@ -10,6 +10,7 @@
 #include "native/planes/kernels.h"
 #include "native/planes/planes.h"
 #include "native/planes/reference.h"
+#include "native/tokens/token_chunk.h"
 #include "texture/presence.h"
 
 #include <array>
@@ -24,6 +25,7 @@ struct Update {
   const TextureDesc& desc;
   const PlaneLayout& layout;
   const Kernels& kernels;
+  const TokenKernels& tokens;
   Grid box;
   std::span<const std::uint32_t> probes;
   MirrorView mirror;
@@ -139,6 +141,7 @@ class Workspace {
   AdaptedTables adapted;
   Vector<std::byte> bytes;  ///< words of the chunk
   ModelMemory models;
+  TokenMemory tokens;
   ChunkHead head;  ///< of the chunk
 
  private:

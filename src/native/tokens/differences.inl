@@ -1,0 +1,70 @@
+// Differences of a group's planes to their reference, as arrays with a row of zeros before them,
+// and their predictions from the texels at N and W.
+
+/// Arrays of the scratch memory, each with a row before it.
+struct Arrays {
+  std::uint16_t* first;
+  std::size_t step;
+  std::uint16_t* operator[](unsigned i) const { return first + i * step; }
+};
+GICODEC_INLINE Arrays arrays_of(const TokenBlock& block) {
+  return {block.scratch + block.width, block.width + block.stride};
+}
+GICODEC_INLINE void clear_row_before(std::uint16_t* array, unsigned width) {
+  std::memset(array - width, 0, std::size_t{2} * width);
+}
+
+/// Bits of a plane as a mask.
+GICODEC_INLINE I16 mask_of(unsigned bits) { return set((1 << bits) - 1); }
+
+/// What a difference is predicted from. Column 0 has no W: it takes N.
+GICODEC_INLINE I16 predicted(TokenPrediction prediction, const std::uint16_t* at,
+                             const TokenBlock& block, unsigned t) {
+  if (prediction == TokenPrediction::none) return set(0);
+  const I16 north = load(at - block.width);
+  if (prediction == TokenPrediction::north) return north;
+  const I16 inner = load(block.columns + t), west = load(at - 1);
+  return bit_xor(north, bit_and(inner, bit_xor(west, north)));
+}
+
+/// Adds to each row the one above; the compiler knows the width of most.
+template <unsigned kWidth>
+GICODEC_INLINE void add_rows(std::uint16_t* at, unsigned width, unsigned texels) {
+  const unsigned w = kWidth != 0 ? kWidth : width;
+  for (unsigned row = 0; row < texels; row += w) {
+    std::uint16_t* const here = at + row;
+    for (unsigned x = 0; x < w; ++x) {
+      here[x] = static_cast<std::uint16_t>(here[x] + *(here + x - w));
+    }
+  }
+}
+/// The same, but for texels that are copies, which have differences of their own.
+template <unsigned kWidth>
+GICODEC_INLINE void add_rows(std::uint16_t* at, const std::uint16_t* is_copy,
+                             const std::uint16_t* copied, unsigned width, unsigned texels) {
+  const unsigned w = kWidth != 0 ? kWidth : width;
+  for (unsigned row = 0; row < texels; row += w) {
+    std::uint16_t* const here = at + row;
+    for (unsigned x = 0; x < w; ++x) {
+      const auto sum = static_cast<std::uint16_t>(here[x] + *(here + x - w));
+      const std::uint16_t mask = is_copy[row + x];
+      here[x] = static_cast<std::uint16_t>((sum & ~mask) | (copied[row + x] & mask));
+    }
+  }
+}
+/// Sums along rows, each behind what column 0 of the row above has.
+GICODEC_INLINE void add_columns(std::uint16_t* at, const TokenBlock& block) {
+  const std::uint16_t* inner = block.columns;
+  for (unsigned s = 1; s < block.width; s *= 2, inner += block.stride) {
+    for (unsigned t = (block.texels - 1) / kLanes * kLanes;; t -= kLanes) {
+      store(at + t, add(load(at + t), bit_and(load(at + t - s), load(inner + t))));
+      if (t == 0) break;
+    }
+  }
+  for (unsigned row = block.width; row < block.texels; row += block.width) {
+    const std::uint16_t above = *(at + row - block.width);
+    for (unsigned x = 0; x < block.width; ++x) {
+      at[row + x] = static_cast<std::uint16_t>(at[row + x] + above);
+    }
+  }
+}

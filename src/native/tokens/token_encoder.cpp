@@ -1,0 +1,236 @@
+#include "native/tokens/token_blocks.h"
+#include "native/tokens/token_head.h"
+
+#include "native/models/models.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+namespace gicodec::native {
+namespace {
+
+/// Blocks by which predictions are chosen, and texels of them.
+constexpr std::size_t kSampledBlocks = 24, kSampledTexels = 4096;
+/// Tokens from which on only every fourth block is counted.
+constexpr std::size_t kManyTokens = 16384;
+constexpr std::uint32_t kCountScale = 4;
+
+/// Places of the blocks that a stream begins with, or ends before.
+std::size_t first_block(std::size_t blocks, unsigned stream, unsigned streams) {
+  return blocks * stream / streams;
+}
+
+/// Logarithm to base 2 in 1/256, rounded down between powers of two.
+std::uint64_t log2_of(std::uint64_t n) {
+  const auto whole = static_cast<unsigned>(std::bit_width(n)) - 1;
+  const std::uint64_t rest = whole > 8 ? n >> (whole - 8) : n << (8 - whole);
+  return whole * 256U + (rest - 256);
+}
+
+using Counts = std::array<std::uint32_t, kMaxTokens>;
+
+/// About what tokens of these counts cost, with their raw bits, in 1/256 bits.
+std::uint64_t cost_of(const TokenGroup& group, const Counts& counts) {
+  std::uint64_t all = 0, cost = 0;
+  for (unsigned t = 0; t < group.tokens(); ++t) all += counts[t];
+  for (unsigned t = 0; t < group.tokens(); ++t) {
+    if (counts[t] == 0) continue;
+    const unsigned raw = t > group.base() ? group.raw_bits(t - group.base()) : 0;
+    cost +=
+        counts[t] * (log2_of(all) - log2_of(counts[t]) + 256U * (t > group.base() + 1U ? raw : 0));
+  }
+  return cost;
+}
+
+class TokenEncoder {
+ public:
+  TokenEncoder(const Update& u, std::span<const std::uint32_t> positions, const BlockTable& records,
+               TokenMemory& memory)
+      : u_(u),
+        positions_(positions),
+        records_(records),
+        memory_(memory),
+        layout_(plane_layout(u.desc)),
+        blocks_(u, positions, refers(u, layout_), layout_.pairs, memory) {
+    head_.refers = refers(u, layout_);
+  }
+
+  /// False if the chunk takes more than `most` bytes.
+  bool encode(unsigned streams, std::size_t most, std::vector<std::byte>& out) {
+    head_.streams = streams;
+    find_constants();
+    for (;;) {
+      groups_ = token_groups(layout_, head_.coded);
+      for (unsigned g = 0; g < groups_.count; ++g) choose_prediction(groups_.group[g]);
+      if (make_tokens()) break;
+    }
+    const std::size_t begin = out.size();
+    ByteWriter writer(out);
+    write_token_head(layout_, head_, writer);
+    for (unsigned g = 0; g < groups_.count; ++g) {
+      write_group(g, writer);
+      if (out.size() - begin > most) return false;
+    }
+    return true;
+  }
+
+ private:
+  static bool refers(const Update& u, const PlaneLayout& layout) {
+    return !u.update && u.neighbours() && !layout.pairs;
+  }
+  [[nodiscard]] std::size_t texels() const { return blocks_.texels(); }
+  [[nodiscard]] std::span<std::uint8_t> tokens_of(unsigned group) const {
+    const std::size_t all = positions_.size() * texels() + kTokenSlack;
+    return std::span(memory_.tokens).subspan(group * all, all);
+  }
+
+  /// Planes that are constant in the first block: make_tokens() finds out whether in all.
+  void find_constants() {
+    blocks_.load(0, records_, true);
+    for (unsigned p = 0; p < layout_.planes; ++p) {
+      const std::uint16_t* const values = blocks_.plane(p);
+      head_.constant[p] = values[0];
+      const bool same =
+          std::all_of(values, values + texels(), [&](std::uint16_t v) { return v == values[0]; });
+      if (!same || layout_.pairs) head_.coded |= 1U << p;
+    }
+  }
+  /// False, and the planes are coded from now on, if one is not constant.
+  bool check_constants() {
+    std::uint32_t others = 0;
+    for (unsigned p = 0; p < layout_.planes; ++p) {
+      if ((head_.coded >> p & 1) != 0) continue;
+      const std::uint16_t* const values = blocks_.plane(p);
+      std::uint16_t differs = 0;
+      for (std::size_t t = 0; t < texels(); ++t) {
+        differs = static_cast<std::uint16_t>(differs | (values[t] ^ head_.constant[p]));
+      }
+      if (differs != 0) others |= 1U << p;
+    }
+    head_.coded |= others;
+    return others == 0;
+  }
+
+  void choose_prediction(TokenGroup& group) {
+    std::uint64_t least = UINT64_MAX;
+    TokenGroup best = group;
+    const std::size_t n = positions_.size();
+    const std::size_t sampled =
+        std::clamp<std::size_t>(kSampledTexels / texels(), 1, std::min(kSampledBlocks, n));
+    std::array<Counts, kTokenPredictions> counts{};
+    memory_.streams.resize(texels() + kTokenSlack);
+    memory_.raw.resize(texels() * kMaxRawBytes + kRawSlack);
+    group.follows = group.planes > 1 && group.copies == 0 && layout_.low == 0;
+    const unsigned predictions = group.copies != 0 ? kTokenPredictions - 1 : kTokenPredictions;
+    for (std::size_t i = 0; i < sampled; ++i) {
+      blocks_.load(n * i / sampled, records_, true);
+      const TokenBlock block = blocks_.block(group);
+      for (unsigned p = 0; p < predictions; ++p) {
+        group.prediction = static_cast<TokenPrediction>(p);
+        BitSink unused{memory_.raw.data(), 0, 0};
+        u_.tokens.write(group, block, memory_.streams.data(), unused);
+        for (std::size_t t = 0; t < texels(); ++t) ++counts[p][memory_.streams[t]];
+      }
+    }
+    for (unsigned p = 0; p < predictions; ++p) {
+      const std::uint64_t cost = cost_of(group, counts[p]);
+      if (cost >= least) continue;
+      least = cost;
+      best = group;
+      best.prediction = static_cast<TokenPrediction>(p);
+    }
+    group = best;
+  }
+
+  /// Tokens and raw bits of all blocks. False if a plane turned out not to be constant.
+  bool make_tokens() {
+    const std::size_t n = positions_.size();
+    memory_.tokens.resize(groups_.count * (n * texels() + kTokenSlack));
+    const std::size_t most = n * texels() * kMaxRawBytes + kRawSlack;
+    memory_.raw.resize(groups_.count * most);
+    std::array<BitSink, kMaxGroups> sinks{};
+    for (unsigned g = 0; g < groups_.count; ++g) sinks[g].next = memory_.raw.data() + g * most;
+    for (std::size_t b = 0; b < n; ++b) {
+      blocks_.load(b, records_, true);
+      if (!check_constants()) return false;
+      for (unsigned g = 0; g < groups_.count; ++g) {
+        const TokenGroup& group = groups_.group[g];
+        u_.tokens.write(group, blocks_.block(group), &tokens_of(g)[b * texels()], sinks[g]);
+      }
+    }
+    for (unsigned g = 0; g < groups_.count; ++g) {
+      const std::uint8_t* const first = memory_.raw.data() + g * most;
+      raw_[g] = {first, static_cast<std::size_t>(sinks[g].next - first) + (sinks[g].count > 0)};
+    }
+    return true;
+  }
+
+  [[nodiscard]] Counts count(unsigned g) const {
+    const auto tokens = tokens_of(g).first(positions_.size() * texels());
+    const std::size_t step = tokens.size() >= kManyTokens ? 4 : 1;
+    std::array<Counts, 4> counts{};  // so that equal tokens in a row do not wait for each other
+    for (std::size_t b = 0; b < positions_.size(); b += step) {
+      const auto block = tokens.subspan(b * texels(), texels());
+      for (std::size_t t = 0; t < block.size(); ++t) ++counts[t % 4][block[t]];
+    }
+    for (unsigned t = 0; t < kMaxTokens; ++t) {
+      counts[0][t] = (counts[0][t] + counts[1][t] + counts[2][t] + counts[3][t]) * kCountScale + 1;
+    }
+    return counts[0];
+  }
+
+  void write_group(unsigned g, ByteWriter& writer) {
+    const TokenGroup& group = groups_.group[g];
+    const std::size_t n = positions_.size(), all = n * texels();
+    const Counts counts = count(g);
+    const unsigned most = all >= 65536 ? kMaxLength : all >= 8192 ? 10 : 8;
+    const CodeLengths lengths = choose_lengths(std::span(counts).first(group.tokens()), most);
+    memory_.writer.set(lengths, group.tokens());
+    memory_.streams.resize(CodeWriter::bound(all) + head_.streams * 16);
+    std::array<std::size_t, kMaxStreams> size{};
+    std::uint8_t* next = memory_.streams.data();
+    for (unsigned s = 0; s < head_.streams; ++s) {
+      const std::size_t first = first_block(n, s, head_.streams) * texels(),
+                        last = first_block(n, s + 1, head_.streams) * texels();
+      std::uint8_t* const stop =
+          memory_.writer.write(tokens_of(g).subspan(first, last - first), next);
+      size[s] = static_cast<std::size_t>(stop - next);
+      next = stop;
+    }
+    writer.fixed(static_cast<std::uint8_t>(static_cast<unsigned>(group.prediction) |
+                                           (group.follows ? 4U : 0U)));
+    write_lengths(lengths, group.tokens(), writer);
+    for (unsigned s = 0; s < head_.streams; ++s) writer.varint(size[s]);
+    writer.varint(raw_[g].size());
+    writer.bytes(std::as_bytes(std::span(memory_.streams.data(), next)));
+    writer.bytes(std::as_bytes(raw_[g]));
+  }
+
+  const Update& u_;
+  std::span<const std::uint32_t> positions_;
+  const BlockTable& records_;
+  TokenMemory& memory_;
+  PlaneLayout layout_;
+  TokenBlocks blocks_;
+  TokenHead head_;
+  TokenGroups groups_;
+  std::array<std::span<const std::uint8_t>, kMaxGroups> raw_;
+};
+
+}  // namespace
+
+bool takes_tokens(const TextureDesc& desc) noexcept {
+  return desc.presence == Presence::all && model_of(desc).adapts != Adapts::always;
+}
+
+bool encode_tokens(const Update& u, std::span<const std::uint32_t> positions,
+                   const BlockTable& records, unsigned streams, std::size_t most,
+                   TokenMemory& memory, std::vector<std::byte>& out) {
+  const std::size_t begin = out.size();
+  if (TokenEncoder(u, positions, records, memory).encode(streams, most, out)) return true;
+  out.resize(begin);
+  return false;
+}
+
+}  // namespace gicodec::native
