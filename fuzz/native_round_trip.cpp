@@ -32,6 +32,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto flags = input.byte();
   settings.chunk.strong = (flags & 1) != 0;
   settings.threads = 1 + (flags >> 1 & 1);
+  settings.chunk.turbo = (flags & 8) != 0;
+  settings.chunk.streams = 4U << (flags >> 4) % 5;
   // A few boxes of any shape, or those of the encoder's choice.
   Grid box{1 + input.byte() % desc.grid.x, 1 + input.byte() % desc.grid.y,
            1 + input.byte() % desc.grid.z};

@@ -87,6 +87,13 @@ std::vector<test::UpdateCase> cases() {
   return all;
 }
 
+/// By the presets that make other chunks.
+std::vector<Bytes> payloads_of(const test::UpdateCase& u) {
+  native::PayloadSettings turbo;
+  turbo.chunk.turbo = true;
+  return {test::encode(u, {}, best_isa()), test::encode(u, turbo, best_isa())};
+}
+
 bool ends_adaptive(const test::UpdateCase& u, std::span<const std::byte> payload) {
   native::PayloadMemory memory;
   EXPECT_EQ(native::check_payload(u.desc, u.blocks.size(), payload, memory), Status::ok);
@@ -95,8 +102,7 @@ bool ends_adaptive(const test::UpdateCase& u, std::span<const std::byte> payload
 
 /// But for what the binary coder reads: it takes any bytes, the same records from no others.
 TEST(NativeHostile, NoPrefixPassesForTheWhole) {
-  for (auto& u : cases()) {
-    const Bytes payload = test::encode(u, {}, best_isa());
+  const auto check = [](const test::UpdateCase& u, const Bytes& payload) {
     const bool adaptive = ends_adaptive(u, payload);
     for (std::size_t n = 0; n < payload.size(); ++n) {
       // Models take their time, whatever is left of the bytes.
@@ -114,13 +120,15 @@ TEST(NativeHostile, NoPrefixPassesForTheWhole) {
                                                  u.presence, u.intra, u.mirror_presence)
                                    .has_value());
     }
+  };
+  for (auto& u : cases()) {
+    for (const Bytes& payload : payloads_of(u)) check(u, payload);
   }
 }
 
 /// Every bit of the heads, some of what follows; fewer where models take their time.
 TEST(NativeHostile, BitFlipsGetOneVerdict) {
-  for (auto& u : cases()) {
-    Bytes payload = test::encode(u, {}, best_isa());
+  const auto check = [](const test::UpdateCase& u, Bytes payload) {
     const bool few = ends_adaptive(u, payload) && !test::everything();
     const std::size_t heads = few ? 64 : 256, step = few ? 331 : 29;
     for (std::size_t bit = 0; bit < payload.size() * 8; bit += bit < heads ? 1 : step) {
@@ -128,15 +136,19 @@ TEST(NativeHostile, BitFlipsGetOneVerdict) {
       compare_all(u, payload);
       payload[bit / 8] ^= std::byte(1U << bit % 8);
     }
+  };
+  for (auto& u : cases()) {
+    for (const Bytes& payload : payloads_of(u)) check(u, payload);
   }
 }
 
 TEST(NativeHostile, TrailingBytesAreRefused) {
   for (auto& u : cases()) {
-    Bytes payload = test::encode(u, {}, best_isa());
-    payload.push_back(std::byte{0});
-    compare_all(u, payload);
-    EXPECT_NE(attempt(u, payload, best_isa()).status, Status::ok);
+    for (Bytes payload : payloads_of(u)) {
+      payload.push_back(std::byte{0});
+      compare_all(u, payload);
+      EXPECT_NE(attempt(u, payload, best_isa()).status, Status::ok);
+    }
   }
 }
 
@@ -150,6 +162,7 @@ TEST(NativeHostile, NoiseBehindASoundHead) {
       chunk[0] = std::byte(1 | test::pick(random, 0, 5) << 2 | test::pick(random, 0, 7) << 5);
       chunk[1] = chunk[2] = std::byte{0};
       if (round % 4 == 0) chunk[0] = std::byte{2};
+      if (round % 4 == 1) chunk[0] = std::byte(3 | test::pick(random, 0, 15) << 2);
       payload.insert(payload.end(), chunk.begin(), chunk.end());
       compare_all(u, payload);
     }

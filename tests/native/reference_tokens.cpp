@@ -72,6 +72,10 @@ bool TokenReader::read_group(Group& group, unsigned streams, Bytes& in) const {
   if (head > 7 || group.prediction > 2) return false;
   if (group.copies && (group.follows || group.prediction == 2)) return false;
   if (group.follows && group.planes.size() == 1) return false;
+  for (const std::size_t plane : group.planes) {
+    const bool other = planes_.all()[plane].stored != planes_.all()[group.planes[0]].stored;
+    if (group.follows && other) return false;
+  }
   std::vector<unsigned> lengths;
   for (unsigned t = 0; t < group.count(); t += 2) {
     const unsigned both = in.u8();

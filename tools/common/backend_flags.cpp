@@ -50,7 +50,7 @@ void add_backend_flags(Command& command, BackendFlags& flags) {
       ->group(group);
   command
       .add_option("--preset", flags.preset,
-                  "native: fast or strong; hevc: x265's, ultrafast to placebo")
+                  "native: turbo, fast or strong; hevc: x265's, ultrafast to placebo")
       ->type_name("NAME")
       ->group(group);
   command
@@ -136,7 +136,8 @@ HevcSettings hevc_settings_of(const BackendFlags& flags, const TextureDesc& desc
 
 /// The values of --level, --preset and --chunk that a backend takes, in words.
 const char* allowed_settings(const std::string& backend) {
-  if (backend == "native") return "--preset fast or strong, --chunk 1 to 4096, and no --level";
+  if (backend == "native")
+    return "--preset turbo, fast or strong, --chunk 1 to 4096, and no --level";
   if (backend == "lz4") return "--level 1 to 12, no --preset and no --chunk";
   if (backend == "zstd") return "--level 1 to 22, no --preset and no --chunk";
   if (backend == "hevc") {

@@ -73,7 +73,8 @@ void add_update_flags(tools::Command& app, ServerFlags& o) {
       ->allow(tools::one_of({"native", "zstd", "lz4", "raw"}))
       ->show_default()
       ->group(group);
-  app.add_option("--preset", o.server.settings.preset, "native: fast or strong")->group(group);
+  app.add_option("--preset", o.server.settings.preset, "native: turbo, fast or strong")
+      ->group(group);
   app.add_option("--chunk", o.server.settings.chunk,
                  "native: blocks per chunk at most, 1 to 4096; 0: by the size of the volume")
       ->type_name("N")

@@ -68,11 +68,9 @@ class TokenEncoder {
     const std::size_t begin = out.size();
     ByteWriter writer(out);
     write_token_head(layout_, head_, writer);
-    for (unsigned g = 0; g < groups_.count; ++g) {
+    for (unsigned g = 0; g < groups_.count && out.size() - begin <= most; ++g)
       write_group(g, writer);
-      if (out.size() - begin > most) return false;
-    }
-    return true;
+    return out.size() - begin <= most;
   }
 
  private:
@@ -121,7 +119,7 @@ class TokenEncoder {
     std::array<Counts, kTokenPredictions> counts{};
     memory_.streams.resize(texels() + kTokenSlack);
     memory_.raw.resize(texels() * kMaxRawBytes + kRawSlack);
-    group.follows = group.planes > 1 && group.copies == 0 && layout_.low == 0;
+    group.follows = group.can_follow() && layout_.low == 0;
     const unsigned predictions = group.copies != 0 ? kTokenPredictions - 1 : kTokenPredictions;
     for (std::size_t i = 0; i < sampled; ++i) {
       blocks_.load(n * i / sampled, records_, true);

@@ -28,6 +28,10 @@ struct TokenGroup {
   bool follows = false;     ///< later planes' differences are to that of the first one
   TokenPrediction prediction = TokenPrediction::none;
 
+  /// Whether follows may be set.
+  [[nodiscard]] bool can_follow() const noexcept {
+    return planes > 1 && copies == 0 && bits[1] == bits[0] && (planes == 2 || bits[2] == bits[0]);
+  }
   /// Token base() + c has c raw bits for the first plane and c - 1 for each other; 16 each for 16.
   [[nodiscard]] unsigned base() const noexcept { return small + copies - 2U; }
   [[nodiscard]] unsigned tokens() const noexcept { return base() + widest + 1U; }

@@ -75,8 +75,8 @@ inline void read_group(TokenGroup& group, unsigned streams, ByteReader& reader, 
   group.follows = (first & 4) != 0;
   const bool copies = group.copies != 0;
   if (first > 7 || (first & 3) >= kTokenPredictions ||
-      (copies && (group.follows || group.prediction == TokenPrediction::west)) ||
-      (group.follows && group.planes == 1)) {
+      (copies && group.prediction == TokenPrediction::west) ||
+      (group.follows && !group.can_follow())) {
     reader.fail(Status::corrupt);
   }
   const unsigned tokens = group.tokens();
