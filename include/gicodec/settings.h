@@ -13,8 +13,8 @@ namespace GICODEC_API gicodec {
 /// Each backend reads some of these, and refuses a value outside its range with invalid_settings.
 struct BackendSettings {
   int level = 0;  ///< lz4: 1..12, LZ4HC from 3 on; zstd: 1..22; 0: the backend's default
-  /// native: "turbo" (for links above some 50 Mbps), "fast" (the default) or "strong"; hevc: an x265
-  /// preset; empty: the backend's default.
+  /// native: "turbo" for fast links, "fast" (the default) or "strong"; hevc: an x265 preset; empty:
+  /// the backend's default.
   std::string preset = {};
   /// native: most blocks per chunk, 1..4096. 0: chosen by the volume's size, the same for every
   /// update ("strong": up to 4096). A thread codes a chunk on its own: smaller chunks use more
