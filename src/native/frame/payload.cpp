@@ -51,7 +51,8 @@ bool adapts(const EncodeJob& job, const EncodeSettings& settings) {
   constexpr std::size_t kMaxTiny = 1U << 26, kMaxSmall = 1U << 18;
   const Adapts when = model_of(job.desc).adapts;
   if (when == Adapts::always) return true;
-  if (when == Adapts::never || settings.turbo || settings.set >= 0 || settings.lanes != 0 || settings.observe) {
+  if (when == Adapts::never || settings.turbo || settings.set >= 0 || settings.lanes != 0 ||
+      settings.observe) {
     return false;
   }
   if (settings.strong || when == Adapts::if_strong) return settings.strong;
@@ -125,7 +126,8 @@ void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa i
                    : adaptive              ? box_of_adaptive(job)
                    : settings.chunk.strong ? box_of_strong(job.desc, layout)
                                            : implicit_box;
-  if (!adaptive && !settings.chunk.turbo) find_steps(job, kernels(isa), layout, memory.block_values);
+  if (!adaptive && !settings.chunk.turbo)
+    find_steps(job, kernels(isa), layout, memory.block_values);
   Update update{.desc = job.desc,
                 .layout = layout,
                 .kernels = kernels(isa),
