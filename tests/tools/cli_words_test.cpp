@@ -148,7 +148,8 @@ TEST_F(CliWords, HostileChannelNames) {
 }
 
 TEST_F(CliWords, SettingsThatAreRefused) {
-  expect_usage({"encode", "-o", "x.gic", "--preset", "slow", "in"}, {"slow", "turbo, fast or strong"});
+  expect_usage({"encode", "-o", "x.gic", "--preset", "slow", "in"},
+               {"slow", "turbo, fast or strong"});
   expect_usage({"encode", "-o", "x.gic", "--backend", "lz4", "--level", "99", "in"},
                {"99", "1 to 12"});
   expect_usage({"encode", "-o", "x.gic", "--backend", "raw", "--level", "1", "in"}, {"neither"});
