@@ -161,7 +161,7 @@ bool CodeReader::read(std::span<const TokenStream, kStreamsAtOnce> streams) cons
   // beyond them.
   constexpr unsigned kLookups = 56 / kMaxLength;
   constexpr std::ptrdiff_t kStep = 6 * kLookups + 8, kReadAhead = 16;
-  const std::uint64_t mask = (1U << bits_) - 1;
+  const std::size_t mask = (std::size_t{1} << bits_) - 1;
   std::array<Bits, kStreamsAtOnce> in{};
   std::array<std::uint8_t*, kStreamsAtOnce> out{};
   const auto begin = [&](unsigned k) {
@@ -174,7 +174,7 @@ bool CodeReader::read(std::span<const TokenStream, kStreamsAtOnce> streams) cons
     return end - in[k].next >= kReadAhead && last - out[k] >= kStep;
   };
   const auto look_up = [&](Bits& bits, std::uint8_t*& to) {
-    const std::uint64_t entry = several_[bits.held & mask];
+    const std::uint64_t entry = several_[static_cast<std::size_t>(bits.held) & mask];
     store(to, entry);
     to += entry >> 56;
     const auto taken = static_cast<unsigned>(entry >> 48 & 0xFF);
@@ -192,8 +192,8 @@ bool CodeReader::read(std::span<const TokenStream, kStreamsAtOnce> streams) cons
     std::array<const std::uint8_t*, kStreamsAtOnce> stop{};
     std::array<std::uint8_t*, kStreamsAtOnce> full{};
     bool any = true;
-    for (unsigned k = 0; k < kStreamsAtOnce; ++k) {
-      any = any && has_step(k);
+    for (unsigned k = 0; k < kStreamsAtOnce; ++k) any = any && has_step(k);
+    for (unsigned k = 0; any && k < kStreamsAtOnce; ++k) {
       stop[k] = begin(k) + streams[k].bytes.size() - kReadAhead;
       full[k] = streams[k].tokens.data() + streams[k].tokens.size() - kStep;
     }
@@ -205,9 +205,9 @@ bool CodeReader::read(std::span<const TokenStream, kStreamsAtOnce> streams) cons
         look_up(in2, out2);
         look_up(in3, out3);
       }
-      any = (in0.next <= stop[0]) & (in1.next <= stop[1]) & (in2.next <= stop[2]) &
-            (in3.next <= stop[3]) & (out0 <= full[0]) & (out1 <= full[1]) & (out2 <= full[2]) &
-            (out3 <= full[3]);
+      any = in0.next <= stop[0] && in1.next <= stop[1] && in2.next <= stop[2] &&
+            in3.next <= stop[3] && out0 <= full[0] && out1 <= full[1] && out2 <= full[2] &&
+            out3 <= full[3];
     }
     in = {in0, in1, in2, in3};
     out = {out0, out1, out2, out3};
@@ -228,7 +228,7 @@ bool CodeReader::read(std::span<const TokenStream, kStreamsAtOnce> streams) cons
       if (byte < size)
         std::memcpy(rest.data(), begin(k) + byte, std::min<std::size_t>(8, size - byte));
       const std::uint64_t bits = load(rest.data()) >> (at & 7);
-      const std::uint8_t token = one_[bits & mask];
+      const std::uint8_t token = one_[static_cast<std::size_t>(bits) & mask];
       *out[k]++ = token;
       at += lengths_[token];
     }

@@ -60,7 +60,8 @@ Status decode_tokens(const Update& u, std::span<const std::uint32_t> positions, 
   memory.tokens.resize(groups.count * all + kTokenSlack);
   memory.raw.clear();
   std::array<BitSource, kMaxGroups> source{};
-  std::array<std::size_t, kMaxGroups> raw_at{}, raw_bits{};
+  std::array<std::size_t, kMaxGroups> raw_at{};
+  std::array<std::uint64_t, kMaxGroups> raw_bits{};
   for (unsigned g = 0; g < groups.count; ++g) {
     GroupParts parts;
     read_group(groups.group[g], head.streams, reader, parts);
@@ -69,7 +70,7 @@ Status decode_tokens(const Update& u, std::span<const std::uint32_t> positions, 
     if (!read_streams(parts, head.streams, n, texels, tokens, memory.reader))
       return Status::corrupt;
     raw_at[g] = memory.raw.size();
-    raw_bits[g] = 8 * parts.raw.size();
+    raw_bits[g] = std::uint64_t{8} * parts.raw.size();
     // What a block may read beyond the end.
     const auto* const raw = reinterpret_cast<const std::uint8_t*>(parts.raw.data());
     memory.raw.insert(memory.raw.end(), raw, raw + parts.raw.size());
@@ -97,9 +98,10 @@ Status decode_tokens(const Update& u, std::span<const std::uint32_t> positions, 
     blocks.store(records.data() + positions[b] * u.block_bytes());
   }
   for (unsigned g = 0; g < groups.count; ++g) {
-    const std::size_t left = raw_bits[g] - source[g].at;
+    const std::uint64_t left = raw_bits[g] - source[g].at;
     if (left >= 8) return Status::corrupt;
-    if (left > 0 && source[g].bytes[raw_bits[g] / 8 - 1] >> (8 - left) != 0) return Status::corrupt;
+    const auto last = static_cast<std::size_t>(source[g].at / 8);
+    if (left > 0 && source[g].bytes[last] >> (8 - left) != 0) return Status::corrupt;
   }
   return Status::ok;
 }
