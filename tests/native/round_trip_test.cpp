@@ -28,33 +28,37 @@ TextureDesc small_desc(test::Random& random) {
   return desc;
 }
 
-RC_GTEST_PROP(NativeRoundTrip, AnyTexture, (std::uint64_t seed)) {
-  test::Random random(seed);
-  const auto desc = small_desc(random);
-  const auto content = test::kContents[random() % std::size(test::kContents)];
-  native::PayloadSettings settings;
-  settings.chunk.strong = test::chance(random, 4);
-  if (test::chance(random, 2)) {
-    settings.box = {test::pick(random, 1, desc.grid.x), test::pick(random, 1, desc.grid.y),
-                    test::pick(random, 1, desc.grid.z)};
-  }
-  if (test::chance(random, 3)) settings.chunk.lanes = 1U << test::pick(random, 0, 5);
-  check_everything(any_update(desc, content, test::pick(random, 1, 4), seed), settings);
-  RC_ASSERT(!testing::Test::HasFailure());
+Grid any_box(test::Random& random, const Grid& grid) {
+  return {test::pick(random, 1, grid.x), test::pick(random, 1, grid.y),
+          test::pick(random, 1, grid.z)};
 }
 
-TEST(NativeRoundTrip, EveryFormatAndContent) {
+void check_formats(const native::PayloadSettings& settings) {
   test::Sweep sweep;
   for (const auto& format : test::distinct_formats()) {
     const TextureDesc desc = probe_texture(format.record, {6, 4, 5}, 6, 1);
     for (const auto content : test::kContents) {
       for (const bool keyframe : {true, false}) {
         if (!sweep.takes()) continue;
-        check_everything(test::make_update(desc, content, keyframe, 1, 5), {});
+        check_everything(test::make_update(desc, content, keyframe, 1, 5), settings);
       }
     }
   }
 }
+
+RC_GTEST_PROP(NativeRoundTrip, AnyTexture, (std::uint64_t seed)) {
+  test::Random random(seed);
+  const auto desc = small_desc(random);
+  const auto content = test::kContents[random() % std::size(test::kContents)];
+  native::PayloadSettings settings;
+  settings.chunk.strong = test::chance(random, 4);
+  if (test::chance(random, 2)) settings.box = any_box(random, desc.grid);
+  if (test::chance(random, 3)) settings.chunk.lanes = 1U << test::pick(random, 0, 5);
+  check_everything(any_update(desc, content, test::pick(random, 1, 4), seed), settings);
+  RC_ASSERT(!testing::Test::HasFailure());
+}
+
+TEST(NativeRoundTrip, EveryFormatAndContent) { check_formats({}); }
 
 /// Probes that enter a volume are predicted from those that are there.
 TEST(NativeRoundTrip, FreshUpdatesCostLessThanKeyframes) {
@@ -93,10 +97,7 @@ RC_GTEST_PROP(NativeRoundTrip, AnyTextureByTokens, (std::uint64_t seed)) {
   native::PayloadSettings settings;
   settings.chunk.turbo = true;
   settings.chunk.streams = 4U << test::pick(random, 0, 4);
-  if (test::chance(random, 2)) {
-    settings.box = {test::pick(random, 1, desc.grid.x), test::pick(random, 1, desc.grid.y),
-                    test::pick(random, 1, desc.grid.z)};
-  }
+  if (test::chance(random, 2)) settings.box = any_box(random, desc.grid);
   check_everything(any_update(desc, content, test::pick(random, 1, 4), seed), settings);
   RC_ASSERT(!testing::Test::HasFailure());
 }
@@ -104,16 +105,7 @@ RC_GTEST_PROP(NativeRoundTrip, AnyTextureByTokens, (std::uint64_t seed)) {
 TEST(NativeRoundTrip, EveryFormatAndContentByTokens) {
   native::PayloadSettings settings;
   settings.chunk.turbo = true;
-  test::Sweep sweep;
-  for (const auto& format : test::distinct_formats()) {
-    const TextureDesc desc = probe_texture(format.record, {6, 4, 5}, 6, 1);
-    for (const auto content : test::kContents) {
-      for (const bool keyframe : {true, false}) {
-        if (!sweep.takes()) continue;
-        check_everything(test::make_update(desc, content, keyframe, 1, 5), settings);
-      }
-    }
-  }
+  check_formats(settings);
 }
 
 /// Blocks of any shape, on grids and in pools, whatever their neighbours are to them.

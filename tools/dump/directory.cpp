@@ -7,11 +7,8 @@
 #include <utility>
 
 namespace gicodec::tools {
-namespace {
 
 namespace fs = std::filesystem;
-
-}  // namespace
 
 void make_directory(const std::string& path) {
   std::error_code error;

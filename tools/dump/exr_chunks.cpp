@@ -72,8 +72,11 @@ std::optional<std::uint64_t> unpacked_zlib(std::span<const std::byte> packed,
 
 class ChunkWalk {
  public:
-  ChunkWalk(const std::string& path, const std::vector<ExrPart>& parts)
-      : file_(path), parts_(parts) {}
+  ChunkWalk(const std::string& path, const std::vector<ExrPart>& parts,
+            const std::vector<ExrImage>& images)
+      : file_(path), parts_(parts), read_(parts.size()) {
+    for (const ExrImage& image : images) read_[image.info.place.part] = true;
+  }
 
   void run() {
     const ExrPart& last = parts_.back();
@@ -120,7 +123,8 @@ class ChunkWalk {
     const auto size = number<std::uint32_t>(at);
     if (!size || *size > file_.size() - at - 4) return std::nullopt;
     const auto window = part.tiled ? tile(part, place) : lines(part, place[0]);
-    if (window && unpacked(part, at + 4, *size, bytes_of(part, *window)) < bytes_of(part, *window))
+    if (window && read_[index] &&
+        unpacked(part, at + 4, *size, bytes_of(part, *window)) < bytes_of(part, *window))
       fail_short(index, *window, *size);
     return at + 4 + *size;
   }
@@ -166,13 +170,15 @@ class ChunkWalk {
 
   TextureFile file_;
   const std::vector<ExrPart>& parts_;
+  std::vector<bool> read_;  ///< parts that are
   std::vector<std::byte> packed_;
 };
 
 }  // namespace
 
-void check_exr_chunks(const std::string& path, const std::vector<ExrPart>& parts) {
-  ChunkWalk(path, parts).run();
+void check_exr_chunks(const std::string& path, const std::vector<ExrPart>& parts,
+                      const std::vector<ExrImage>& images) {
+  ChunkWalk(path, parts, images).run();
 }
 
 }  // namespace gicodec::tools

@@ -136,7 +136,7 @@ std::vector<Dump> read_exr(const std::string& path, const Hints& hints, bool tex
   const std::vector<ExrPart> parts = read_exr_header(path);
   try {
     const std::vector<ExrImage> images = images_of(parts, hints, path);
-    if (texels) check_exr_chunks(path, parts);
+    if (texels) check_exr_chunks(path, parts, images);
     Imf::MultiPartInputFile file(path.c_str(), 0);
     std::vector<Dump> dumps;
     for (const ExrImage& image : images) {

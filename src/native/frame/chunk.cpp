@@ -71,13 +71,6 @@ namespace {
 
 constexpr std::int32_t kUnknown = kNoBlock - 1;  ///< a slot of what nothing may be predicted from
 
-Grid place_in_box(const Grid& grid, const Grid& box, std::uint32_t probe) {
-  return {probe % grid.x % box.x, probe / grid.x % grid.y % box.y, probe / grid.x / grid.y % box.z};
-}
-std::size_t slot_of(const Grid& box, const Grid& place) {
-  return place.x + box.x * (place.y + std::size_t{box.y} * place.z);
-}
-
 }  // namespace
 
 void Chunk::build(const Grid& grid, const Grid& box, std::span<const std::uint32_t> probes,

@@ -30,6 +30,14 @@ struct ChunkGrid {
 /// An encoder's choice: halves the longest side until a chunk has at most `target` probes.
 [[nodiscard]] Grid default_box(const Grid& grid, std::uint32_t target) noexcept;
 
+/// Where a probe lies in its box, and the number of that place.
+[[nodiscard]] inline Grid place_in_box(const Grid& grid, const Grid& box, std::uint32_t probe) {
+  return {probe % grid.x % box.x, probe / grid.x % grid.y % box.y, probe / grid.x / grid.y % box.z};
+}
+[[nodiscard]] inline std::size_t slot_of(const Grid& box, const Grid& place) {
+  return place.x + box.x * (place.y + std::size_t{box.y} * place.z);
+}
+
 /// The probes of an update, chunk by chunk: positions in the update's list, ascending.
 struct ChunkLists {
   Vector<std::uint32_t> chunk;  ///< those that have probes, ascending

@@ -125,15 +125,14 @@ Status decode_chunk(const Update& u, std::span<const std::uint32_t> positions,
     }
     return decode_adaptive(u, positions, reader.rest(), texels, w.models);
   }
+  if (std::size_t{u.box.x} * u.box.y * u.box.z > kMaxChunkProbes) return Status::corrupt;
   if ((first & 3) == kTokenChunk) {
     if (statistics != nullptr) {
       ++statistics->head_bytes;
       statistics->word_bytes += bytes.size() - 1;
     }
-    if (std::size_t{u.box.x} * u.box.y * u.box.z > kMaxChunkProbes) return Status::corrupt;
     return decode_tokens(u, positions, first, reader.rest(), texels, w.tokens);
   }
-  if (std::size_t{u.box.x} * u.box.y * u.box.z > kMaxChunkProbes) return Status::corrupt;
   ChunkHead& head = w.head;
   Input in{};
   std::size_t table_bytes = 0;

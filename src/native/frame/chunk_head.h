@@ -3,6 +3,7 @@
 
 #include "base/bytes.h"
 #include "native/frame/workspace.h"
+#include "native/planes/coded_planes.h"
 
 #include <bit>
 #include <vector>
@@ -123,12 +124,7 @@ inline void write_head(const PlaneLayout& layout, const ChunkHead& head,
   if (layout.pairs) {
     for (const auto frequent : head.frequent) writer.fixed(frequent);
   } else {
-    for (unsigned p = 0; p < layout.planes; p += 8) {
-      writer.fixed(static_cast<std::uint8_t>(head.coded >> p));
-    }
-    for (unsigned p = 0; p < layout.planes; ++p) {
-      if ((head.coded >> p & 1) == 0) writer.fixed(head.constant[p]);
-    }
+    write_coded(layout, head.coded, head.constant, writer);
   }
   if (tables.repeats.distributions > 0) write_repeat_tables(tables.repeats, writer);
   if (!tables.overridden()) return;
@@ -142,20 +138,6 @@ inline void read_sets(ByteReader& reader, TableChoice& tables) {
     const auto both = reader.fixed<std::uint8_t>();
     tables.set[p] = both & 15;
     tables.set[p + 1] = both >> 4;
-  }
-}
-
-inline void read_planes(const PlaneLayout& layout, ByteReader& reader, ChunkHead& head) {
-  std::uint64_t coded = 0;
-  for (unsigned p = 0; p < layout.planes; p += 8) {
-    coded |= std::uint64_t{reader.fixed<std::uint8_t>()} << p;
-  }
-  if (coded >> layout.planes != 0) return reader.fail(Status::corrupt);
-  head.coded = static_cast<std::uint32_t>(coded);
-  for (unsigned p = 0; p < layout.planes; ++p) {
-    if ((head.coded >> p & 1) != 0) continue;
-    head.constant[p] = reader.fixed<std::uint16_t>();
-    if (head.constant[p] >> (layout.plane[p].bits - 1) > 1) reader.fail(Status::corrupt);
   }
 }
 
@@ -185,7 +167,7 @@ inline std::size_t read_head(const PlaneLayout& layout, bool update, std::uint8_
     for (auto& frequent : head.frequent) frequent = reader.fixed<std::uint16_t>();
     head.coded = 3;
   } else {
-    read_planes(layout, reader, head);
+    head.coded = read_coded(layout, reader, head.constant);
   }
   const std::size_t before = reader.rest().size();
   read_tables(layout, first, reader, head.tables);

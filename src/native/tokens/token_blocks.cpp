@@ -6,10 +6,6 @@
 namespace gicodec::native {
 namespace {
 
-Grid place_in_box(const Grid& grid, const Grid& box, std::uint32_t block) {
-  return {block % grid.x % box.x, block / grid.x % grid.y % box.y, block / grid.x / grid.y % box.z};
-}
-
 /// By texel: all bits set from column 1, 2, 4, … on.
 void fill_columns(std::size_t width, std::size_t texels, std::size_t stride,
                   Vector<std::uint16_t>& columns) {
@@ -49,8 +45,7 @@ TokenBlocks::TokenBlocks(const Update& u, std::span<const std::uint32_t> positio
   memory.slots.assign(std::size_t{u.box.x} * u.box.y * u.box.z, kNoBlock);
   for (std::size_t b = 0; b < positions.size(); ++b) {
     const Grid at = place_in_box(u.desc.grid, u.box, u.probes[positions[b]]);
-    memory.slots[at.x + u.box.x * (at.y + std::size_t{u.box.y} * at.z)] =
-        static_cast<std::int32_t>(b);
+    memory.slots[slot_of(u.box, at)] = static_cast<std::int32_t>(b);
   }
 }
 
@@ -67,8 +62,7 @@ const std::byte* TokenBlocks::neighbour(std::size_t b, unsigned axis, const Bloc
   const std::size_t step = axis == kAxisX   ? 1
                            : axis == kAxisY ? u_.box.x
                                             : std::size_t{u_.box.x} * u_.box.y;
-  const std::int32_t slot =
-      memory_.slots[at.x + u_.box.x * (at.y + std::size_t{u_.box.y} * at.z) - step];
+  const std::int32_t slot = memory_.slots[slot_of(u_.box, at) - step];
   if (slot != kNoBlock) return records[positions_[static_cast<std::size_t>(slot)]].data();
   const std::uint32_t beside = block - (axis == kAxisX   ? 1
                                         : axis == kAxisY ? grid.x

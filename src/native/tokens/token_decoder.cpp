@@ -18,7 +18,8 @@ bool read_streams(const GroupParts& parts, unsigned streams, std::size_t blocks,
   for (unsigned s = 0; s < streams; s += kStreamsAtOnce) {
     std::array<TokenStream, kStreamsAtOnce> some{};
     for (unsigned k = 0; k < kStreamsAtOnce; ++k) {
-      const std::size_t first = blocks * (s + k) / streams, last = blocks * (s + k + 1) / streams;
+      const std::size_t first = first_block(blocks, s + k, streams),
+                        last = first_block(blocks, s + k + 1, streams);
       some[k] = {parts.stream[s + k],
                  tokens.subspan(tokens_at(first, texels, s + k), (last - first) * texels)};
     }
@@ -84,7 +85,7 @@ Status decode_tokens(const Update& u, std::span<const std::uint32_t> positions, 
   unsigned stream = 0;
   for (std::size_t b = 0; b < n; ++b) {
     if (u.cancelled()) return Status::cancelled;
-    while (b >= n * (stream + 1) / head.streams) ++stream;
+    while (b >= first_block(n, stream + 1, head.streams)) ++stream;
     blocks.load(b, known, false);
     for (unsigned g = 0; g < groups.count; ++g) {
       const TokenGroup& group = groups.group[g];

@@ -16,11 +16,6 @@ constexpr std::size_t kSampledBlocks = 24, kSampledTexels = 4096;
 constexpr std::size_t kManyTokens = 16384;
 constexpr std::uint32_t kCountScale = 4;
 
-/// Places of the blocks that a stream begins with, or ends before.
-std::size_t first_block(std::size_t blocks, unsigned stream, unsigned streams) {
-  return blocks * stream / streams;
-}
-
 /// Logarithm to base 2 in 1/256, rounded down between powers of two.
 std::uint64_t log2_of(std::uint64_t n) {
   const auto whole = static_cast<unsigned>(std::bit_width(n)) - 1;
@@ -36,9 +31,8 @@ std::uint64_t cost_of(const TokenGroup& group, const Counts& counts) {
   for (unsigned t = 0; t < group.tokens(); ++t) all += counts[t];
   for (unsigned t = 0; t < group.tokens(); ++t) {
     if (counts[t] == 0) continue;
-    const unsigned raw = t > group.base() ? group.raw_bits(t - group.base()) : 0;
-    cost +=
-        counts[t] * (log2_of(all) - log2_of(counts[t]) + 256U * (t > group.base() + 1U ? raw : 0));
+    const unsigned raw = t > group.base() + 1U ? group.raw_bits(t - group.base()) : 0;
+    cost += counts[t] * (log2_of(all) - log2_of(counts[t]) + 256U * raw);
   }
   return cost;
 }
@@ -111,8 +105,6 @@ class TokenEncoder {
   }
 
   void choose_prediction(TokenGroup& group) {
-    std::uint64_t least = UINT64_MAX;
-    TokenGroup best = group;
     const std::size_t n = positions_.size();
     const std::size_t sampled =
         std::clamp<std::size_t>(kSampledTexels / texels(), 1, std::min(kSampledBlocks, n));
@@ -131,14 +123,12 @@ class TokenEncoder {
         for (std::size_t t = 0; t < texels(); ++t) ++counts[p][memory_.streams[t]];
       }
     }
+    std::uint64_t least = UINT64_MAX;
     for (unsigned p = 0; p < predictions; ++p) {
       const std::uint64_t cost = cost_of(group, counts[p]);
-      if (cost >= least) continue;
-      least = cost;
-      best = group;
-      best.prediction = static_cast<TokenPrediction>(p);
+      if (cost < least) group.prediction = static_cast<TokenPrediction>(p);
+      least = std::min(least, cost);
     }
-    group = best;
   }
 
   /// Tokens and raw bits of all blocks. False if a plane turned out not to be constant.

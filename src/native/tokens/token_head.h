@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/bytes.h"
+#include "native/planes/coded_planes.h"
 #include "native/tokens/token_groups.h"
 
 #include <array>
@@ -21,6 +22,11 @@ struct TokenHead {
   std::array<std::uint16_t, kMaxPlanes> constant{};
 };
 
+/// The block that a stream begins with; for `streams`, the number of blocks.
+inline std::size_t first_block(std::size_t blocks, unsigned stream, unsigned streams) {
+  return blocks * stream / streams;
+}
+
 /// What a group's head says, and its bytes.
 struct GroupParts {
   CodeLengths lengths{};
@@ -32,12 +38,7 @@ inline void write_token_head(const PlaneLayout& layout, const TokenHead& head, B
   const int streams = std::countr_zero(head.streams / kStreamsAtOnce);
   writer.fixed(static_cast<std::uint8_t>(kTokenChunk | (head.refers ? kRefers : 0) |
                                          streams << kStreamsShift));
-  for (unsigned p = 0; p < layout.planes; p += 8) {
-    writer.fixed(static_cast<std::uint8_t>(head.coded >> p));
-  }
-  for (unsigned p = 0; p < layout.planes; ++p) {
-    if ((head.coded >> p & 1) == 0) writer.fixed(head.constant[p]);
-  }
+  write_coded(layout, head.coded, head.constant, writer);
 }
 
 inline TokenHead read_token_head(const PlaneLayout& layout, std::uint8_t first,
@@ -47,17 +48,7 @@ inline TokenHead read_token_head(const PlaneLayout& layout, std::uint8_t first,
   head.streams = kStreamsAtOnce << (first >> kStreamsShift & ((1U << kStreamsBits) - 1));
   if (first >> (kStreamsShift + kStreamsBits) != 0 || head.streams > kMaxStreams)
     reader.fail(Status::corrupt);
-  std::uint64_t coded = 0;
-  for (unsigned p = 0; p < layout.planes; p += 8) {
-    coded |= std::uint64_t{reader.fixed<std::uint8_t>()} << p;
-  }
-  if (coded >> layout.planes != 0) reader.fail(Status::corrupt);
-  head.coded = static_cast<std::uint32_t>(coded);
-  for (unsigned p = 0; p < layout.planes; ++p) {
-    if ((head.coded >> p & 1) != 0) continue;
-    head.constant[p] = reader.fixed<std::uint16_t>();
-    if (head.constant[p] >> (layout.plane[p].stored - 1) > 1) reader.fail(Status::corrupt);
-  }
+  head.coded = read_coded(layout, reader, head.constant);
   return head;
 }
 
