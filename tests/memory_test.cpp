@@ -34,7 +34,10 @@ struct Bounds {
     const bool pairs = of.record.format == Format::R16G16_SFLOAT && of.presence == Presence::all;
     const bool shared = of.record.format == Format::E5B9G9R9_UFLOAT_PACK32;
     const std::size_t lanes = pairs ? 1280 : shared ? 432 : 384;
-    return threads * ((4 * block_count(of) + lanes) * words + 2 * kMiB);
+    const std::size_t block = record_count(of.block) * std::size_t{of.record.count};
+    const std::size_t values = std::min(std::max(kMiB, block), block * block_count(of));
+    const std::size_t rasters = of.model == Model::continuous ? 40 * values + 512 * kKiB : 0;
+    return threads * ((4 * block_count(of) + lanes) * words + 2 * kMiB + rasters);
   }
   [[nodiscard]] std::size_t encoder(std::string_view backend, bool lossy) const {
     const std::size_t textures = lossy ? 11 : 9;
@@ -59,7 +62,17 @@ TextureDesc partial(Presence presence, const Record& record, BlockShape block,
   return desc;
 }
 
+TextureDesc map(const Record& record, Grid grid, BlockShape block) {
+  TextureDesc desc = probe_texture(record, grid, block.x, 0);
+  desc.block = block;
+  desc.model = Model::continuous;
+  return desc;
+}
+
 const TextureDesc kShapes[] = {bricks(),
+                               map(Format::R16G16B16A16_SFLOAT, {24, 20, 1}, {8, 8, 1}),
+                               map(Format::R32_SFLOAT, {4, 4, 4}, {16, 16, 2}),
+                               map(Format::E5B9G9R9_UFLOAT_PACK32, {1, 1, 2}, {64, 64, 8}),
                                partial(Presence::mask, Format::R8G8B8_SNORM, {8, 8, 8}, 400),
                                partial(Presence::mask, Format::R8_UINT, {1, 1, 1}, 5000),
                                partial(Presence::count, Format::R16_UNORM, {64, 8, 1}, 300),

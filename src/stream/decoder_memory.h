@@ -26,7 +26,8 @@ namespace gicodec {
 /// - Per block: the records of a packet; planes and reference of a byte backend; existing records,
 ///   unless all exist; bands before and after, and their blocks; lists of blocks, of which the
 ///   division into chunks takes five.
-/// - Per thread: a native chunk's blocks and the mirror's as words, lanes, and adaptive models.
+/// - Per thread: a native chunk's blocks and the mirror's as words, lanes, and adaptive models; for
+///   continuous textures rasters.
 /// - Bricks: lists by place, of the mirror's and of a chunk's.
 [[nodiscard]] inline std::uint64_t scratch_memory(const TextureDesc& desc,
                                                   unsigned threads) noexcept {
@@ -39,8 +40,9 @@ namespace gicodec {
   const std::uint64_t presence = desc.presence == Presence::all ? 0 : block + presence_bytes(desc);
   const std::uint64_t places =
       kept_presence(desc) == 0 ? 0 : (1 + std::uint64_t{threads}) * sizeof(native::PlacedBrick);
+  const std::uint64_t rasters = native::takes_raster(desc) ? native::raster_memory(desc) : 0;
   return kFixed + blocks * (places + 3 * block + presence + 2 * band_bytes(desc) + kBlock) +
-         threads * (of_chunk + kFixedOfThread);
+         threads * (of_chunk + kFixedOfThread + rasters);
 }
 
 /// The work of a packet: bytes of the blocks that it writes or, as a keyframe, clears. Bricks add

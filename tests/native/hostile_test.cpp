@@ -78,6 +78,12 @@ std::vector<test::UpdateCase> cases() {
       all.push_back(
           test::make_update(test::voxels(3, 2, halves), test::Content::noisy, keyframe, 1, 2));
     }
+    TextureDesc map = probe_texture(Format::R16G16B16A16_SFLOAT, {3, 2, 2}, 4, 0);
+    map.model = Model::continuous;
+    all.push_back(test::make_update(map, test::Content::noisy, keyframe, 2, 2));
+    map.record = Format::E5B9G9R9_UFLOAT_PACK32;
+    map.presence = Presence::mask;
+    all.push_back(test::make_update(map, test::Content::smooth, keyframe, 1, 2));
     for (const bool floats : {false, true}) {
       all.push_back(test::make_vertex_update(
           test::vertices({2, 2, floats ? 1U : 2U}, floats), test::VertexContent::smooth,
@@ -91,7 +97,11 @@ std::vector<test::UpdateCase> cases() {
 std::vector<Bytes> payloads_of(const test::UpdateCase& u) {
   native::PayloadSettings turbo;
   turbo.chunk.turbo = true;
-  return {test::encode(u, {}, best_isa()), test::encode(u, turbo, best_isa())};
+  std::vector<Bytes> all{test::encode(u, {}, best_isa()), test::encode(u, turbo, best_isa())};
+  native::PayloadSettings strong;
+  strong.chunk.strong = true;
+  if (native::takes_raster(u.desc)) all.push_back(test::encode(u, strong, best_isa()));
+  return all;
 }
 
 bool ends_adaptive(const test::UpdateCase& u, std::span<const std::byte> payload) {

@@ -1,5 +1,6 @@
 #include "native/reference_adaptive.h"
 
+#include "native/reference_continuous.h"
 #include "native/reference_records.h"
 #include "native/reference_vectors.h"
 #include "native/reference_voxels.h"
@@ -296,7 +297,8 @@ class Sets {
 }  // namespace
 
 std::optional<std::vector<std::vector<std::byte>>> decode_adaptive(
-    const TextureDesc& desc, const std::vector<AdaptiveBlock>& blocks, const HeldBlocks& held,
+    const TextureDesc& desc, const std::array<std::uint32_t, 3>& box,
+    const std::vector<AdaptiveBlock>& blocks, const HeldBlocks& held,
     const std::vector<HeldBrick>& bricks, std::span<const std::byte> stream) {
   BitSource source(stream);
   BitModels models(source);
@@ -314,6 +316,9 @@ std::optional<std::vector<std::vector<std::byte>>> decode_adaptive(
     out = decode_voxels(desc, blocks, bricks, models);
   } else if (desc.model == Model::hemispheres) {
     out = decode_vectors(desc, blocks, held, models);
+  } else if (is_raster(desc)) {
+    out = decode_continuous(desc, box, blocks, held, models);
+    if (out.empty()) return {};
   } else {
     out = decode_records(desc, blocks, models);
   }

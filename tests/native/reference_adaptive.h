@@ -34,7 +34,8 @@ using HeldBlocks = std::map<std::array<std::uint32_t, 3>, std::vector<std::byte>
 
 /// The blocks' records, or nothing for a stream that breaks the format.
 [[nodiscard]] std::optional<std::vector<std::vector<std::byte>>> decode_adaptive(
-    const TextureDesc& desc, const std::vector<AdaptiveBlock>& blocks, const HeldBlocks& held,
+    const TextureDesc& desc, const std::array<std::uint32_t, 3>& box,
+    const std::vector<AdaptiveBlock>& blocks, const HeldBlocks& held,
     const std::vector<HeldBrick>& bricks, std::span<const std::byte> stream);
 
 }  // namespace gicodec::reference

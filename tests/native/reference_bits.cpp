@@ -34,10 +34,48 @@ BitModels::Counter& BitModels::counter(const F& f) {
   return (*bucket)[static_cast<std::size_t>(f.i)];
 }
 
-BitModels::Mixed BitModels::mixed(const Mixer& mixer, std::span<const F> by) {
+void BitModels::count(Counter& c, bool bit) {
+  const Number to = bit ? (1 << 22) - 1 : 0;
+  c.p += static_cast<std::int32_t>(((to - c.p) * (131072 / (2 * c.n + 3))) >> 16);
+  if (c.n < 127) ++c.n;
+}
+
+std::array<Number, BitModels::kMaxInputs>& BitModels::weights_of(const Mixer& mixer,
+                                                                 std::size_t inputs) {
   const auto [entry, added] = mixers_.try_emplace(mixer);
-  auto& weights = entry->second;
-  if (added) weights.fill(5 * 65536 / (4 * static_cast<Number>(by.size())));
+  if (added) entry->second.fill(5 * 65536 / (4 * static_cast<Number>(inputs)));
+  return entry->second;
+}
+
+bool BitModels::mixed_twice(const Mixer& a, const Mixer& b, const std::array<F, 5>& by) {
+  auto &weights_a = weights_of(a, 5), &weights_b = weights_of(b, 5);
+  std::array<Counter*, 5> counters{};
+  std::array<Number, 5> s{};
+  Number sum_a = 0, sum_b = 0;
+  for (std::size_t i = 0; i < 5; ++i) {
+    counters[i] = &counter(by[i]);
+    s[i] = stretch(counters[i]->p);
+    sum_a += s[i] * weights_a[i];
+    sum_b += s[i] * weights_b[i];
+  }
+  const auto q = [](Number x) { return squash(brought_into(x, -3071, 3071)); };
+  const bool bit =
+      source_.bit(static_cast<Word>(brought_into(q((sum_a + sum_b) >> 17), 24, 65512)));
+  const auto learn = [&](std::array<Number, 5>& weights, Number sum) {
+    const Number error = (bit ? 65536 : 0) - q(sum >> 16);
+    for (std::size_t i = 0; i < 5; ++i) {
+      const Number step = (s[i] * error * 80 + (1 << 19)) >> 20;
+      weights[i] = brought_into(weights[i] + step, -(1 << 19), 1 << 19);
+    }
+  };
+  learn(weights_a, sum_a);
+  learn(weights_b, sum_b);
+  for (Counter* c : counters) count(*c, bit);
+  return bit;
+}
+
+BitModels::Mixed BitModels::mixed(const Mixer& mixer, std::span<const F> by) {
+  auto& weights = weights_of(mixer, by.size());
   std::array<Counter*, kMaxInputs> counters{};
   std::array<Number, kMaxInputs> s{};
   Number x = 0;
@@ -51,10 +89,7 @@ BitModels::Mixed BitModels::mixed(const Mixer& mixer, std::span<const F> by) {
   for (std::size_t i = 0; i < by.size(); ++i) {
     const Number step = (s[i] * ((bit ? 65536 : 0) - q) * 18 + (1 << 19)) >> 20;
     weights[i] = brought_into(weights[i] + step, -(1 << 19), 1 << 19);
-    Counter& c = *counters[i];
-    const Number to = bit ? (1 << 22) - 1 : 0;
-    c.p += static_cast<std::int32_t>(((to - c.p) * (131072 / (2 * c.n + 3))) >> 16);
-    if (c.n < 127) ++c.n;
+    count(*counters[i], bit);
   }
   return {bit, q};
 }

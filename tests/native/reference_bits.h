@@ -110,6 +110,8 @@ class BitModels {
   bool flag(const Mixer& mixer, std::initializer_list<F> by) {
     return mixed(mixer, {by.begin(), by.size()}).bit;
   }
+  /// With two mixers (docs/native/continuous.md, "Bits").
+  bool mixed_twice(const Mixer& a, const Mixer& b, const std::array<F, 5>& by);
   bool flag(Number mixer, std::initializer_list<F> by) { return flag({'f', mixer, 0}, by); }
   Word value(unsigned channel, const std::array<Word, 5>& hashes, unsigned bits);
   Number number(unsigned channel, const std::array<Word, 5>& hashes, std::initializer_list<F> sign);
@@ -122,6 +124,8 @@ class BitModels {
   };
   using Bucket = std::array<Counter, 16>;
   Counter& counter(const F& f);
+  static void count(Counter& counter, bool bit);
+  std::array<Number, kMaxInputs>& weights_of(const Mixer& mixer, std::size_t inputs);
   struct Noise {
     Number gain = 8192, rest = 0;
   };

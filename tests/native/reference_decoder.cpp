@@ -253,7 +253,8 @@ class Decoder {
       }
       all.push_back(std::move(one));
     }
-    auto records = decode_adaptive(desc_, all, held_around(blocks), held_bricks(), stream);
+    auto records = decode_adaptive(desc_, {box_[0], box_[1], box_[2]}, all, held_around(blocks),
+                                   held_bricks(), stream);
     if (!records) return false;
     for (std::size_t i = 0; i < blocks.size(); ++i) raw_[blocks[i]] = std::move((*records)[i]);
     return true;
@@ -297,7 +298,8 @@ class Decoder {
   /// The received blocks of the chunk's box that are not in the update.
   HeldBlocks held_around(const std::vector<std::uint32_t>& blocks) const {
     HeldBlocks held;
-    if (mirror_.empty() || desc_.model != Model::hemispheres) return held;
+    if (mirror_.empty()) return held;
+    if (desc_.model != Model::hemispheres && desc_.model != Model::continuous) return held;
     const auto box_of = [&](std::uint32_t block) {
       auto at = coordinates(block);
       for (unsigned axis = 0; axis < 3; ++axis) at[axis] /= box_[axis];

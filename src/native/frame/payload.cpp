@@ -67,6 +67,12 @@ Grid box_of_adaptive(const EncodeJob& job) {
   const std::uint64_t blocks = model_of(job.desc).chunk_records / record_count(job.desc.block);
   const std::uint64_t most = std::max<std::uint64_t>(blocks, 1) * block_count(job.desc) / listed;
   const Grid large = large_box(job.desc);
+  if (takes_raster(job.desc)) {
+    const std::uint64_t values =
+        std::uint64_t{record_count(job.desc.block)} * job.desc.record.count;
+    const std::uint64_t fitting = std::max<std::uint64_t>(1, kMaxRasterValues / values);
+    return default_box(job.desc.grid, static_cast<std::uint32_t>(std::min(most, fitting)));
+  }
   if (most >= std::uint64_t{large.x} * large.y * large.z) return large;
   return default_box(job.desc.grid,
                      static_cast<std::uint32_t>(std::min<std::uint64_t>(most, kMaxBoxSide)));

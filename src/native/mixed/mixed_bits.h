@@ -69,6 +69,11 @@ inline constexpr std::int32_t kMaxWeight = 1 << 19;
 inline constexpr int kMixerRate = 18;                 ///< of 2^20
 inline constexpr std::uint32_t kMinProbability = 24;  ///< of 65536, what no bit is less likely than
 
+/// Of 65536, by a sum of weighted stretches.
+inline std::uint32_t mixed_probability(std::int64_t sum) {
+  return squash(static_cast<int>(std::clamp<std::int64_t>(sum, -kMaxStretch, kMaxStretch)));
+}
+
 /// Codes a bit by the mixed probability of its counters, and updates them. `probability`: that of
 /// a 1, of 65536.
 template <std::size_t N, typename Coder>
@@ -80,14 +85,44 @@ bool code_bit(Coder& coder, const std::array<Counter*, N>& context, Mixer<N>& mi
     s[i] = kStretch[*context[i] >> 20];
     sum += std::int64_t{s[i]} * mixer.weight[i];
   }
-  probability =
-      squash(static_cast<int>(std::clamp<std::int64_t>(sum >> 16, -kMaxStretch, kMaxStretch)));
+  probability = mixed_probability(sum >> 16);
   bit = coder.bit(std::clamp(probability, kMinProbability, 65536 - kMinProbability), bit);
   const std::int32_t error = (bit ? 65536 : 0) - static_cast<std::int32_t>(probability);
   for (std::size_t i = 0; i < N; ++i) {
     const std::int64_t step = (std::int64_t{s[i]} * error * kMixerRate + (1 << 19)) >> 20;
     mixer.weight[i] =
         std::clamp(mixer.weight[i] + static_cast<std::int32_t>(step), -kMaxWeight, kMaxWeight);
+    count(*context[i], bit);
+  }
+  return bit;
+}
+
+/// The same with two mixers that were chosen by different contexts. Each learns on its own, and the
+/// coder takes what both say on average.
+template <std::size_t N, typename Coder>
+bool code_bit(Coder& coder, const std::array<Counter*, N>& context, Mixer<N>& one, Mixer<N>& other,
+              bool bit) {
+  constexpr int kRate = 80;
+  std::array<std::int32_t, N> s;
+  std::int64_t sum = 0, other_sum = 0;
+  for (std::size_t i = 0; i < N; ++i) {
+    s[i] = kStretch[*context[i] >> 20];
+    sum += std::int64_t{s[i]} * one.weight[i];
+    other_sum += std::int64_t{s[i]} * other.weight[i];
+  }
+  const std::uint32_t both = mixed_probability((sum + other_sum) >> 17);
+  bit = coder.bit(std::clamp(both, kMinProbability, 65536 - kMinProbability), bit);
+  const std::int32_t to = bit ? 65536 : 0;
+  const std::int32_t error = to - static_cast<std::int32_t>(mixed_probability(sum >> 16));
+  const std::int32_t other_error =
+      to - static_cast<std::int32_t>(mixed_probability(other_sum >> 16));
+  const auto learn = [&](std::int32_t& weight, std::int32_t input, std::int32_t by) {
+    const std::int64_t step = (std::int64_t{input} * by * kRate + (1 << 19)) >> 20;
+    weight = std::clamp(weight + static_cast<std::int32_t>(step), -kMaxWeight, kMaxWeight);
+  };
+  for (std::size_t i = 0; i < N; ++i) {
+    learn(one.weight[i], s[i], error);
+    learn(other.weight[i], s[i], other_error);
     count(*context[i], bit);
   }
   return bit;
@@ -103,6 +138,9 @@ constexpr std::uint32_t hashed(std::uint32_t hash, std::uint32_t value, More... 
   return hashed(hashed(hash, value), more...);
 }
 
+/// What spreads hashes over tables.
+inline constexpr std::uint32_t kBucketFactor = 0xC2B2AE35U;
+
 /// Counters by the hash of their context, in buckets of 16.
 class CounterTable {
  public:
@@ -117,7 +155,7 @@ class CounterTable {
     }
   }
   [[nodiscard]] Counter* operator[](std::uint32_t hash) {
-    const std::size_t bucket = hash * 0xC2B2AE35U >> (32 - kLogarithm);
+    const std::size_t bucket = hash * kBucketFactor >> (32 - kLogarithm);
     Counter* const counters = counters_.data() + bucket * kBucket;
     if (made_[bucket] != generation_) {
       made_[bucket] = generation_;

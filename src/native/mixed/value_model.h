@@ -43,6 +43,8 @@ class ValueModel {
   bool flag(Coder& coder, unsigned mixer, std::uint32_t context, bool value) {
     return flag(coder, mixer, {{{context, 0}, {context, 1}, {context, 2}}}, value);
   }
+  /// For mixers of the caller's.
+  [[nodiscard]] CounterTable& counters() { return counters_; }
   /// With a mixer of the caller's.
   template <typename Coder>
   bool flag(Coder& coder, Mixer<kFlagContexts>& mixer,

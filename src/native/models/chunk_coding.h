@@ -18,6 +18,7 @@ struct ChunkCoding {
   Coder& coder;
   ModelMemory& memory;
   std::size_t most = 0;  ///< encoding: bytes that the coder's output may have
+  bool palettes = true;  ///< encoding: numbers that occur may be listed
 
   /// The records of a block; nothing when decoding.
   [[nodiscard]] std::span<const std::byte> in(std::uint32_t position) const {
@@ -52,6 +53,8 @@ struct ChunkCoding {
 // Each in the folder of its name. False if encoding takes too much, or for what no encoder writes.
 template <typename Coder>
 bool code_records(const ChunkCoding<Coder>& chunk);
+template <typename Coder>
+bool code_continuous(const ChunkCoding<Coder>& chunk);
 template <typename Coder>
 bool code_unordered(const ChunkCoding<Coder>& chunk);
 template <typename Coder>

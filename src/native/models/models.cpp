@@ -26,8 +26,9 @@ bool code(const ChunkCoding<Coder>& chunk) {
   switch (model_of(chunk.update.desc).model) {
     case Model::none:
     case Model::stacked:
-    case Model::continuous:
       return code_records(chunk);
+    case Model::continuous:
+      return takes_raster(chunk.update.desc) ? code_continuous(chunk) : code_records(chunk);
     case Model::unordered:
       return code_unordered(chunk);
     case Model::octree:
@@ -40,15 +41,24 @@ bool code(const ChunkCoding<Coder>& chunk) {
 
 }  // namespace
 
+bool takes_raster(const TextureDesc& desc) noexcept {
+  const auto used = desc.record.used();
+  return desc.model == Model::continuous &&
+         std::any_of(used.begin(), used.end(), [](const Component& component) {
+           return component.type != ComponentType::opaque;
+         });
+}
+
 const ModelRow& model_of(const TextureDesc& desc) noexcept {
   const bool light = desc.record.format == Format::E5B9G9R9_UFLOAT_PACK32 ||
                      desc.record.format == Format::R16G16B16A16_SFLOAT;
   return row(desc.model == Model::octree && !light ? Model::none : desc.model);
 }
 
-bool encode_adaptive(const Update& u, std::span<const std::uint32_t> positions,
-                     const BlockTable& records, std::size_t most, ModelMemory& memory,
-                     std::vector<std::byte>& out) {
+namespace {
+
+bool encode(const Update& u, std::span<const std::uint32_t> positions, const BlockTable& records,
+            std::size_t most, bool palettes, ModelMemory& memory, std::vector<std::byte>& out) {
   const std::size_t begin = out.size();
   out.push_back(std::byte{kAdaptiveChunk});
   BinaryEncoder coder(out);
@@ -58,11 +68,30 @@ bool encode_adaptive(const Update& u, std::span<const std::uint32_t> positions,
                                                       .decoded = {},
                                                       .coder = coder,
                                                       .memory = memory,
-                                                      .most = begin + most});
+                                                      .most = begin + most,
+                                                      .palettes = palettes});
   coder.finish();
   if (within && out.size() - begin <= most) return true;
   out.resize(begin);
   return false;
+}
+
+}  // namespace
+
+bool encode_adaptive(const Update& u, std::span<const std::uint32_t> positions,
+                     const BlockTable& records, std::size_t most, ModelMemory& memory,
+                     std::vector<std::byte>& out) {
+  const std::size_t begin = out.size();
+  const bool done = encode(u, positions, records, most, true, memory, out);
+  if (!takes_raster(u.desc) || !memory.continuous.forms.has_palettes(memory.continuous.raster)) {
+    return done;
+  }
+  // Whether palettes pay shows only without them.
+  const std::size_t end = out.size();
+  if (!encode(u, positions, records, done ? end - begin : most, false, memory, out)) return done;
+  out.erase(out.begin() + static_cast<std::ptrdiff_t>(begin),
+            out.begin() + static_cast<std::ptrdiff_t>(end));
+  return true;
 }
 
 Status decode_adaptive(const Update& u, std::span<const std::uint32_t> positions,

@@ -3,6 +3,7 @@
 // tables; slow and small. Each such model is a folder of its name.
 #pragma once
 
+#include "native/models/continuous/continuous_model.h"
 #include "native/models/light/light_model.h"
 #include "native/models/octree/bricks.h"
 #include "native/models/records/record_model.h"
@@ -34,6 +35,10 @@ struct ModelRow {
   std::uint32_t chunk_records;  ///< that an adaptive chunk should have, to adapt enough
 };
 
+/// Whether adaptive chunks of a texture are rasters: of continuous textures whose texels have
+/// values.
+[[nodiscard]] bool takes_raster(const TextureDesc& desc) noexcept;
+
 /// That of Model::none where records are none that the texture's model is made for.
 [[nodiscard]] const ModelRow& model_of(const TextureDesc& desc) noexcept;
 
@@ -42,6 +47,7 @@ struct ModelMemory {
   ValueModel values;  ///< of any
   SetUpdate set;
   RecordModel record;
+  ContinuousModel continuous;
   LightModel light;
   Bricks bricks;
 };
