@@ -36,7 +36,11 @@ struct Bounds {
     const std::size_t lanes = pairs ? 1280 : shared ? 432 : 384;
     const std::size_t block = record_count(of.block) * std::size_t{of.record.count};
     const std::size_t values = std::min(std::max(kMiB, block), block * block_count(of));
-    const std::size_t rasters = of.model == Model::continuous ? 40 * values + 512 * kKiB : 0;
+    const std::size_t rows = (of.grid.x * std::size_t{of.block.x} + 72) *
+                             ((of.grid.y * std::size_t{of.block.y} + 31) / 32 * 32) * of.grid.z *
+                             of.block.z * of.record.count;
+    const std::size_t rasters =
+        of.model == Model::continuous ? 40 * values + 32 * std::min(kMiB, rows) + kMiB : 0;
     return threads * ((4 * block_count(of) + lanes) * words + 2 * kMiB + rasters);
   }
   [[nodiscard]] std::size_t encoder(std::string_view backend, bool lossy) const {

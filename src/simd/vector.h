@@ -7,6 +7,7 @@
 
 /// Vector values stay in registers only if every function that handles them is inlined.
 #define GICODEC_INLINE [[gnu::always_inline]] inline
+#define GICODEC_INLINE_LAMBDA __attribute__((always_inline))
 /// Unrolls loops over arrays of vectors, which would otherwise live in memory. Off where lanes are
 /// array elements or nothing stays in registers anyway: compilers would only take minutes longer.
 #if defined(__has_feature)  // clang's test for sanitizers

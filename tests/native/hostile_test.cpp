@@ -100,7 +100,12 @@ std::vector<Bytes> payloads_of(const test::UpdateCase& u) {
   std::vector<Bytes> all{test::encode(u, {}, best_isa()), test::encode(u, turbo, best_isa())};
   native::PayloadSettings strong;
   strong.chunk.strong = true;
-  if (native::takes_raster(u.desc)) all.push_back(test::encode(u, strong, best_isa()));
+  native::PayloadSettings rows;
+  rows.chunk.planes = false;
+  if (native::takes_raster(u.desc)) {
+    all.push_back(test::encode(u, strong, best_isa()));
+    all.push_back(test::encode(u, rows, best_isa()));
+  }
   return all;
 }
 

@@ -1,4 +1,5 @@
-// Adaptive chunks of continuous textures: rows that reach over blocks (docs/native/continuous.md).
+// Continuous textures: rows that reach over blocks, adaptive (docs/native/continuous.md) and fast
+// (docs/native/rows.md).
 #include "base/binary_coder.h"
 #include "distinct_formats.h"
 #include "native/content.h"
@@ -7,6 +8,7 @@
 #include "native/reference_decoder.h"
 #include "native/round_trip.h"
 #include "quantise/component_code.h"
+#include "shapes.h"
 
 #include <gtest/gtest.h>
 
@@ -91,10 +93,24 @@ test::UpdateCase update_of(const TextureDesc& desc, bool keyframe, bool intra) {
   return u;
 }
 
-bool is_adaptive(const test::UpdateCase& u, const Bytes& payload) {
+/// Not by planes, which are smaller where there is little.
+native::PayloadSettings rows() {
+  native::PayloadSettings settings;
+  settings.chunk.planes = false;
+  return settings;
+}
+
+/// Of its first chunk.
+std::byte kind_of(const test::UpdateCase& u, const Bytes& payload) {
   native::PayloadMemory memory;
   EXPECT_EQ(native::check_payload(u.desc, u.blocks.size(), payload, memory), Status::ok);
-  return memory.head.chunks[0].front() == std::byte{native::kAdaptiveChunk};
+  return memory.head.chunks[0].front();
+}
+bool is_adaptive(const test::UpdateCase& u, const Bytes& payload) {
+  return kind_of(u, payload) == std::byte{native::kAdaptiveChunk};
+}
+bool is_rows(const test::UpdateCase& u, const Bytes& payload) {
+  return kind_of(u, payload) == std::byte{native::kRowChunk};
 }
 
 TEST(NativeRasters, EveryFormat) {
@@ -106,7 +122,63 @@ TEST(NativeRasters, EveryFormat) {
       SCOPED_TRACE(format.name);
       EXPECT_TRUE(is_adaptive(u, test::encode(u, strong(), best_isa())));
       check_everything(u, strong());
+      const auto used = desc.record.used();
+      const bool words = std::ranges::all_of(used, [](const auto& c) { return c.bits <= 16; });
+      EXPECT_TRUE(!words || is_rows(u, test::encode(u, rows(), best_isa())));
+      check_everything(u, rows());
     }
+  }
+}
+
+/// Strips of more and fewer rows than lanes, of few columns and many, in one slice and several.
+TEST(NativeRasters, StripsOfAnyShape) {
+  struct Case {
+    Format format;
+    Grid grid;
+    std::array<std::uint8_t, 3> block;
+  };
+  for (const auto& [format, grid, block] :
+       {Case{Format::R16G16B16A16_SFLOAT, {1, 1, 1}, {1, 1, 1}},
+        Case{Format::R8_UNORM, {1, 33, 1}, {1, 2, 1}},
+        Case{Format::R8G8_UNORM, {3, 5, 1}, {64, 13, 1}},
+        Case{Format::E5B9G9R9_UFLOAT_PACK32, {5, 9, 3}, {4, 4, 2}},
+        Case{Format::B10G11R11_UFLOAT_PACK32, {2, 1, 7}, {9, 40, 1}},
+        Case{Format::R32_SFLOAT, {6, 6, 6}, {4, 4, 4}},
+        Case{Format::R16_SNORM, {1, 1, 1}, {2, 1, 64}}}) {
+    for (const auto& [keyframe, intra] : {std::pair{true, false}, {true, true}, {false, false}}) {
+      auto u = update_of(map_texture(format, grid, block), keyframe, intra);
+      check_everything(u, rows());
+      if (format != Format::R32_SFLOAT) continue;
+      // Few values, which have places.
+      for (std::size_t i = 0; i < u.records.size(); i += 4) {
+        u.records[i] = u.records[i + 1] = u.records[i + 2] = std::byte{0};
+      }
+      EXPECT_TRUE(is_rows(u, test::encode(u, rows(), best_isa())));
+      check_everything(u, rows());
+    }
+  }
+}
+
+TEST(NativeRasters, RecordsOfAnyComponents) {
+  test::Random random(5);
+  for (int round = 0; round < 40; ++round) {
+    TextureDesc desc = map_texture(Format::R8_UNORM, {3, 4, 2}, {3, 2, 2});
+    desc.record = test::custom_record(random, 24);
+    const auto content = test::kContents[random() % std::size(test::kContents)];
+    for (const auto& settings : {rows(), strong()}) {
+      check_everything(test::any_update(desc, content, 1, random()), settings);
+    }
+  }
+}
+
+/// What is not there costs little, and is not what decides.
+TEST(NativeRasters, RowsOfPartialTextures) {
+  TextureDesc desc = map_texture(Format::R16G16B16A16_SFLOAT, {4, 4, 1}, {8, 8, 1});
+  desc.presence = Presence::mask;
+  for (const bool keyframe : {true, false}) {
+    const auto u = test::make_update(desc, test::Content::smooth, keyframe, 1, 3);
+    EXPECT_TRUE(is_rows(u, test::encode(u, rows(), best_isa())));
+    check_everything(u, rows());
   }
 }
 
@@ -181,9 +253,11 @@ TEST(NativeRasters, BoxesAreBounded) {
   auto u = test::make_update(desc, test::Content::constant, true, 1, 1);
   u.blocks = {0, 128 * 128 - 1};
   u.records.resize(2 * block_bytes(desc));
-  Bytes payload = {std::byte{2 | 8 << 4}, std::byte{native::kAdaptiveChunk}};
-  payload.resize(20);
-  EXPECT_EQ(decoded(u, payload), Status::corrupt);
+  for (const std::uint8_t kind : {native::kAdaptiveChunk, native::kRowChunk}) {
+    Bytes payload = {std::byte{2 | 8 << 4}, std::byte{kind}};
+    payload.resize(20);
+    EXPECT_EQ(decoded(u, payload), Status::corrupt);
+  }
 }
 
 TEST(NativeRasters, PalettesMustFit) {

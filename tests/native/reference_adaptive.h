@@ -38,4 +38,10 @@ using HeldBlocks = std::map<std::array<std::uint32_t, 3>, std::vector<std::byte>
     const std::vector<AdaptiveBlock>& blocks, const HeldBlocks& held,
     const std::vector<HeldBrick>& bricks, std::span<const std::byte> stream);
 
+/// The same of a row chunk (docs/native/rows.md), without its first byte.
+[[nodiscard]] std::optional<std::vector<std::vector<std::byte>>> decode_rows(
+    const TextureDesc& desc, const std::array<std::uint32_t, 3>& box,
+    const std::vector<AdaptiveBlock>& blocks, const HeldBlocks& held,
+    std::span<const std::byte> bytes);
+
 }  // namespace gicodec::reference

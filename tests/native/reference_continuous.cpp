@@ -381,19 +381,11 @@ class Rasters : RasterState {
 
 }  // namespace
 
-bool is_raster(const TextureDesc& desc) {
-  return desc.model == Model::continuous &&
-         std::ranges::any_of(desc.record.used(), [](const Component& component) {
-           return component.type != ComponentType::opaque;
-         });
-}
-
 std::vector<std::vector<std::byte>> decode_continuous(const TextureDesc& desc,
                                                       const std::array<std::uint32_t, 3>& box,
                                                       const std::vector<AdaptiveBlock>& blocks,
                                                       const HeldBlocks& held, BitModels& models) {
-  const std::uint64_t volume = std::uint64_t{box[0]} * box[1] * box[2];
-  if (volume > 1 && volume * record_count(desc.block) * desc.record.count > 1 << 20) return {};
+  if (!may_be_raster(desc, box)) return {};
   std::vector<std::vector<std::byte>> out;
   if (!Rasters(desc, models).decode(blocks, held, out)) return {};
   return out;

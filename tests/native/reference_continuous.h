@@ -8,6 +8,8 @@ namespace gicodec::reference {
 
 /// Whether adaptive chunks of the texture are rasters.
 [[nodiscard]] bool is_raster(const TextureDesc& desc);
+[[nodiscard]] bool may_be_rows(const TextureDesc& desc, const std::array<std::uint32_t, 3>& box);
+[[nodiscard]] bool may_be_raster(const TextureDesc& desc, const std::array<std::uint32_t, 3>& box);
 /// The blocks' records; nothing for a stream that breaks the format.
 [[nodiscard]] std::vector<std::vector<std::byte>> decode_continuous(
     const TextureDesc& desc, const std::array<std::uint32_t, 3>& box,

@@ -185,7 +185,7 @@ class Decoder {
       }
       return in.at_end();
     }
-    if (first == 2) return adaptive_chunk(blocks, in.take(in.left()));
+    if (first == 2 || first == 6) return adaptive_chunk(blocks, first, in.take(in.left()));
     if ((first & 3) == 3) return token_chunk(blocks, first, in);
     if ((first & 3) != 1 || (first >> 2 & 7) > 5) return false;
     if (std::uint64_t{box_[0]} * box_[1] * box_[2] > 4096) return false;
@@ -235,26 +235,27 @@ class Decoder {
     return coder.finished();
   }
 
-  bool adaptive_chunk(const std::vector<std::uint32_t>& blocks, std::span<const std::byte> stream) {
+  bool adaptive_chunk(const std::vector<std::uint32_t>& blocks, unsigned first,
+                      std::span<const std::byte> stream) {
     std::vector<AdaptiveBlock> all;
     for (const auto block : blocks) {
       AdaptiveBlock one{exists(block), {}, coordinates(block)};
-      if (update()) {
-        const auto previous = mirror_.subspan(block * block_bytes_, block_bytes_);
-        one.previous.assign(previous.begin(), previous.end());
-      }
+      const auto copy = [block](std::span<const std::byte> from, std::size_t size) {
+        return std::vector(from.data() + block * size, from.data() + (block + 1) * size);
+      };
+      if (update()) one.previous = copy(mirror_, block_bytes_);
       if (desc_.presence == Presence::brick) {
         const auto said = presence_of(block);
         one.presence.assign(said.begin(), said.end());
-        if (update() && !held_presence_.empty() && received_[block] != 0) {
-          const auto held = held_presence_.subspan(block * presence_bytes(), presence_bytes());
-          one.previous_presence.assign(held.begin(), held.end());
-        }
+        if (update() && !held_presence_.empty() && received_[block] != 0)
+          one.previous_presence = copy(held_presence_, presence_bytes());
       }
       all.push_back(std::move(one));
     }
-    auto records = decode_adaptive(desc_, {box_[0], box_[1], box_[2]}, all, held_around(blocks),
-                                   held_bricks(), stream);
+    const std::array box{box_[0], box_[1], box_[2]};
+    const auto held = held_around(blocks);
+    auto records = first == 6 ? decode_rows(desc_, box, all, held, stream)
+                              : decode_adaptive(desc_, box, all, held, held_bricks(), stream);
     if (!records) return false;
     for (std::size_t i = 0; i < blocks.size(); ++i) raw_[blocks[i]] = std::move((*records)[i]);
     return true;
@@ -298,8 +299,7 @@ class Decoder {
   /// The received blocks of the chunk's box that are not in the update.
   HeldBlocks held_around(const std::vector<std::uint32_t>& blocks) const {
     HeldBlocks held;
-    if (mirror_.empty()) return held;
-    if (desc_.model != Model::hemispheres && desc_.model != Model::continuous) return held;
+    if (mirror_.empty() || desc_.model < Model::continuous) return held;
     const auto box_of = [&](std::uint32_t block) {
       auto at = coordinates(block);
       for (unsigned axis = 0; axis < 3; ++axis) at[axis] /= box_[axis];

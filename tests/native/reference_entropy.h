@@ -52,9 +52,11 @@ class Lanes {
     refill(raw);
     return value;
   }
-  std::vector<unsigned> repeats(const RepeatTables& tables, const std::vector<int>& context) {
+  template <typename Repeats>
+  std::vector<unsigned> repeats(const Repeats& tables, const std::vector<int>& context) {
     std::vector<unsigned> symbol(context.size());
     for (std::size_t l = 0; l < context.size(); ++l) {
+      if (context[l] == kInactive) continue;
       const auto [end0, end1] =
           tables.distributions[tables.map[static_cast<std::size_t>(context[l])]];
       const unsigned slot = state_[l] % 4096;

@@ -104,20 +104,23 @@ bool read_repeat_tables(Bytes& in, RepeatTables& repeats) {
   return !in.failed();
 }
 
+bool read_distribution(Bytes& in, Distribution& m) {
+  const unsigned shape = in.u16(), n = shape >> 6;
+  m = {shape >> 3 & 7, shape & 7, {}};
+  if (m.k > 4 || n > 14) return false;
+  for (unsigned s = 0; s < n; ++s) m.units[s] = in.u8();
+  m.units[14] = in.u8();
+  return m.units[14] >= 1 && std::accumulate(m.units.begin(), m.units.end(), 0U) <= 255;
+}
+
 bool read_overrides(Bytes& in, DistributionTables& tables) {
   const unsigned distributions = in.u8();
   if (distributions > 16) return false;
   for (unsigned i = 0, next = 0; i < distributions; ++i) {
-    const unsigned number = in.u8(), shape = in.u16();
-    if (number < next || number >= 16 || shape >> 10 != 0) return false;
+    const unsigned number = in.u8();
+    if (number < next || number >= 16) return false;
     next = number + 1;
-    Distribution m{shape >> 3 & 7, shape & 7, {}};
-    const unsigned n = shape >> 6;
-    if (m.k > 4 || n > 14) return false;
-    for (unsigned s = 0; s < n; ++s) m.units[s] = in.u8();
-    m.units[14] = in.u8();
-    if (m.units[14] < 1 || std::accumulate(m.units.begin(), m.units.end(), 0U) > 255) return false;
-    tables.distributions[number] = m;
+    if (!read_distribution(in, tables.distributions[number])) return false;
   }
   const unsigned contexts = in.u16();
   if (contexts > 256) return false;

@@ -71,6 +71,7 @@ using Sets = std::array<unsigned, 4>;
 
 [[nodiscard]] bool read_sets(Bytes& in, Sets& sets);
 [[nodiscard]] bool read_repeat_tables(Bytes& in, RepeatTables& repeats);
+[[nodiscard]] bool read_distribution(Bytes& in, Distribution& m);          ///< without its number
 [[nodiscard]] bool read_overrides(Bytes& in, DistributionTables& tables);  ///< those of one role
 
 }  // namespace gicodec::reference

@@ -97,6 +97,7 @@ Status check_chunk(const TextureDesc& desc, const PlaneLayout& layout, bool upda
     return size != 0 && size % block_bytes(desc) == 0 ? Status::ok : Status::corrupt;
   }
   if (first == kAdaptiveChunk) return Status::ok;
+  if (first == kRowChunk) return check_rows(desc, reader.rest());
   if ((first & 3) == kTokenChunk) return check_tokens(desc, first, reader.rest());
   Input in{};
   std::size_t table_bytes = 0;
@@ -124,6 +125,13 @@ Status decode_chunk(const Update& u, std::span<const std::uint32_t> positions,
       statistics->word_bytes += bytes.size() - 1;
     }
     return decode_adaptive(u, positions, reader.rest(), texels, w.models);
+  }
+  if (first == kRowChunk) {
+    if (statistics != nullptr) {
+      ++statistics->head_bytes;
+      statistics->word_bytes += bytes.size() - 1;
+    }
+    return decode_rows(u, positions, reader.rest(), texels, w.rows, w.models.values);
   }
   if (std::size_t{u.box.x} * u.box.y * u.box.z > kMaxChunkProbes) return Status::corrupt;
   if ((first & 3) == kTokenChunk) {

@@ -128,6 +128,14 @@ void find_frequent(const Update& u, Workspace& w, ChunkHead& head) {
   head.frequent[1] = static_cast<std::uint16_t>(best.pair >> 16);
 }
 
+/// Whether rows that reach over blocks are worth their time: where most of their box is listed.
+bool rows_pay(const Update& u, const EncodeSettings& settings,
+              std::span<const std::uint32_t> positions) {
+  if (settings.set >= 0 || settings.lanes != 0 || settings.observe) return false;
+  return takes_rows(u.desc) && fits_rows(u.desc, u.box) &&
+         2 * positions.size() >= blocks_around(u, positions);
+}
+
 class ChunkEncoder {
  public:
   ChunkEncoder(const Update& u, const EncodeSettings& settings, ChunkHead& head, Workspace& w)
@@ -262,30 +270,20 @@ void encode_raw(const Update& u, std::span<const std::uint32_t> positions, const
   }
 }
 
-}  // namespace
+bool may_be_modelled(const Update& u) {
+  return std::size_t{u.box.x} * u.box.y * u.box.z <= kMaxChunkProbes;
+}
 
-void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
-                  const BlockTable& texels, const EncodeSettings& settings, Workspace& w,
-                  std::vector<std::byte>& out) {
+/// Appends a modelled chunk unless it would have more than `most` bytes; false then.
+bool encode_modelled(const Update& u, std::span<const std::uint32_t> positions,
+                     const BlockTable& texels, const EncodeSettings& settings, std::size_t most,
+                     Workspace& w, std::vector<std::byte>& out) {
   ChunkHead& head = w.head;
   // All of them until it is known what the chunk takes.
   const auto blocks = static_cast<unsigned>(positions.size());
   const bool few = blocks <= kFewBlocks && !settings.strong;
-  const std::size_t raw_size = u.present_bytes(positions);
-  if (u.adaptive) {
-    if (!encode_adaptive(u, positions, texels, raw_size, w.models, out)) {
-      encode_raw(u, positions, texels, out);
-    }
-    return;
-  }
-  if (settings.turbo && takes_tokens(u.desc)) {
-    if (!encode_tokens(u, positions, texels, settings.streams, raw_size, w.tokens, out)) {
-      encode_raw(u, positions, texels, out);
-    }
-    return;
-  }
   const auto worth =
-      static_cast<unsigned>(std::clamp<std::size_t>(raw_size / kMinLaneBytes, 1, blocks));
+      static_cast<unsigned>(std::clamp<std::size_t>(most / kMinLaneBytes, 1, blocks));
   const unsigned planned = few                 ? std::min(std::bit_ceil(worth), kLanes)
                            : settings.set >= 0 ? choose_lanes(blocks, 0)
                                                : kLanes;
@@ -319,7 +317,7 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
   // Groups and steps backwards, words from the end of the buffer to its begin. Beyond the size of
   // raw texels there is room for one more group, whatever it holds.
   const std::size_t group_room = Workspace::steps_of_group(u) * kMaxStepBytes + kSlack;
-  w.bytes.resize(raw_size + group_room);
+  w.bytes.resize(most + group_room);
   Output output{};
   std::fill(std::begin(output.state), std::end(output.state), kStateLow);
   auto* const begin = reinterpret_cast<std::uint8_t*>(w.bytes.data());
@@ -330,17 +328,53 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
     const auto steps = encoder.model(g, set);
     if (settings.observe) settings.observe(steps.data(), steps.data() + steps.size());
     u.kernels.encode_steps(steps.data(), steps.data() + steps.size(), set, output);
-    if (static_cast<std::size_t>(end - output.next) >= raw_size) break;
+    if (static_cast<std::size_t>(end - output.next) >= most) break;
   }
   const auto size = static_cast<std::size_t>(end - output.next);
   write_head(u.layout, head, out);
   ByteWriter writer(out);
   for (unsigned l = 0; l < head.lanes; ++l) writer.fixed(output.state[l]);
-  if (out.size() - head_size + size > raw_size) {
+  if (out.size() - head_size + size > most) {
     out.resize(head_size);
-    return encode_raw(u, positions, texels, out);
+    return false;
   }
   writer.bytes(std::as_bytes(std::span(output.next, size)));
+  return true;
+}
+
+/// Whether planes may be smaller than rows, and it costs little time to see: rows have tables of
+/// their own, and know no more than places of large components.
+bool planes_may_pay(const Update& u, std::size_t raw_size) {
+  constexpr std::size_t kLittle = 1 << 16;
+  const auto used = u.desc.record.used();
+  return raw_size <= kLittle ||
+         std::any_of(used.begin(), used.end(), [](const Component& one) { return one.bits > 16; });
+}
+
+}  // namespace
+
+void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
+                  const BlockTable& texels, const EncodeSettings& settings, Workspace& w,
+                  std::vector<std::byte>& out) {
+  const std::size_t raw_size = u.present_bytes(positions), begin = out.size();
+  bool done = false;
+  if (u.adaptive) {
+    done = encode_adaptive(u, positions, texels, raw_size, w.models, out);
+  } else if (settings.turbo && takes_tokens(u.desc)) {
+    done = encode_tokens(u, positions, texels, settings.streams, raw_size, w.tokens, out);
+  } else {
+    done = rows_pay(u, settings, positions) &&
+           encode_rows(u, positions, texels, raw_size, w.rows, w.models.values, out);
+    const std::size_t end = out.size(), most = done ? end - begin - 1 : raw_size;
+    const bool tries = !done || (settings.planes && planes_may_pay(u, raw_size));
+    if (tries && may_be_modelled(u) &&
+        encode_modelled(u, positions, texels, settings, most, w, out)) {
+      out.erase(out.begin() + static_cast<std::ptrdiff_t>(begin),
+                out.begin() + static_cast<std::ptrdiff_t>(end));
+      done = true;
+    }
+  }
+  if (!done) encode_raw(u, positions, texels, out);
 }
 
 }  // namespace gicodec::native

@@ -9,6 +9,7 @@ namespace gicodec::native {
 struct EncodeSettings {
   bool strong = false;   ///< exact mode search and table choice
   bool turbo = false;    ///< token chunks
+  bool planes = true;    ///< planes are tried where rows may be larger
   unsigned streams = 4;  ///< of token chunks
   int set = -1;          ///< table set to use in all places, or the encoder's choice
   unsigned lanes = 0;    ///< 0: the encoder's choice; more where enough_lanes() says so

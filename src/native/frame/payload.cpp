@@ -68,10 +68,8 @@ Grid box_of_adaptive(const EncodeJob& job) {
   const std::uint64_t most = std::max<std::uint64_t>(blocks, 1) * block_count(job.desc) / listed;
   const Grid large = large_box(job.desc);
   if (takes_raster(job.desc)) {
-    const std::uint64_t values =
-        std::uint64_t{record_count(job.desc.block)} * job.desc.record.count;
-    const std::uint64_t fitting = std::max<std::uint64_t>(1, kMaxRasterValues / values);
-    return default_box(job.desc.grid, static_cast<std::uint32_t>(std::min(most, fitting)));
+    const std::uint64_t fitting = std::min<std::uint64_t>(most, blocks_of_raster(job.desc));
+    return default_box(job.desc.grid, static_cast<std::uint32_t>(fitting));
   }
   if (most >= std::uint64_t{large.x} * large.y * large.z) return large;
   return default_box(job.desc.grid,
@@ -128,11 +126,16 @@ void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa i
   PlaneLayout layout = plane_layout(job.desc);
   const Grid implicit_box = box_of_texture(job.desc, layout);
   const bool adaptive = adapts(job, settings.chunk);
+  const bool rows = !adaptive && !settings.chunk.turbo && takes_rows(job.desc) &&
+                    (job.keyframe || 2 * job.blocks.size() >= block_count(job.desc));
   const Grid box = settings.box.x != 0     ? settings.box
                    : adaptive              ? box_of_adaptive(job)
                    : settings.chunk.strong ? box_of_strong(job.desc, layout)
-                                           : implicit_box;
-  if (!adaptive && !settings.chunk.turbo)
+                   : rows && !fits_rows(job.desc, implicit_box)
+                       ? default_box(job.desc.grid, blocks_of_raster(job.desc))
+                       : implicit_box;
+  const bool wide = layout.low != 0;
+  if (!adaptive && !settings.chunk.turbo && (!rows || wide))
     find_steps(job, kernels(isa), layout, memory.block_values);
   Update update{.desc = job.desc,
                 .layout = layout,

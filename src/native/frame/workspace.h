@@ -10,6 +10,7 @@
 #include "native/planes/kernels.h"
 #include "native/planes/planes.h"
 #include "native/planes/reference.h"
+#include "native/rows/row_chunk.h"
 #include "native/tokens/token_chunk.h"
 #include "texture/presence.h"
 
@@ -142,6 +143,7 @@ class Workspace {
   Vector<std::byte> bytes;  ///< words of the chunk
   ModelMemory models;
   TokenMemory tokens;
+  RowMemory rows;
   ChunkHead head;  ///< of the chunk
 
  private:

@@ -83,7 +83,7 @@ bool encode_adaptive(const Update& u, std::span<const std::uint32_t> positions,
                      std::vector<std::byte>& out) {
   const std::size_t begin = out.size();
   const bool done = encode(u, positions, records, most, true, memory, out);
-  if (!takes_raster(u.desc) || !memory.continuous.forms.has_palettes(memory.continuous.raster)) {
+  if (!takes_raster(u.desc) || !memory.continuous.forms.have_places()) {
     return done;
   }
   // Whether palettes pay shows only without them.

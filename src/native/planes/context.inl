@@ -148,6 +148,9 @@ struct Modeller {
     note(context, active, true, kRepeatPlace, 0, symbol);
     return symbol;
   }
+  GICODEC_INLINE I16 row_repeat(I16 context, std::uint32_t active, I16 symbol) {
+    return repeat(context, active, symbol);
+  }
 };
 struct Reader {
   const Tables& tables;
@@ -159,6 +162,9 @@ struct Reader {
   }
   GICODEC_INLINE I16 repeat(I16 context, std::uint32_t active, I16) {
     return decode_repeats(*tables.repeats, context, active, in);
+  }
+  GICODEC_INLINE I16 row_repeat(I16 context, std::uint32_t active, I16) {
+    return decode_repeats(*tables.rows, context, active, in);
   }
 };
 /// Class part of every lane's contexts.

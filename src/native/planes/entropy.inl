@@ -163,8 +163,28 @@ GICODEC_INLINE RepeatEnds find_ends(const RepeatTables& t, I16 context) {
   return {end(0), end(1)};
 }
 
+GICODEC_INLINE RepeatEnds find_ends(const RowRepeats& t, I16 context) {
+  if constexpr (!kByteLookups) {
+    alignas(64) std::uint16_t contexts[kLanes], end[2][kLanes];
+    store(contexts, context);
+    for (unsigned l = 0; l < kLanes; ++l) {
+      for (unsigned k = 0; k < 2; ++k) {
+        end[k][l] = static_cast<std::uint16_t>(t.end(k, contexts[l] & 255));
+      }
+    }
+    return {load(end[0]), load(end[1])};
+  }
+  const B8 distribution = lookup256(t.map, bytes(context));
+  const auto end = [&](unsigned k) {
+    return bit_or(words(lookup16(t.low[k], distribution)),
+                  shift_left<8>(words(lookup16(t.high[k], distribution))));
+  };
+  return {end(0), end(1)};
+}
+
 /// Repeat symbols 0, 1, 2 by comparing with the ends of the first two.
-GICODEC_INLINE I16 decode_repeats(const RepeatTables& tables, I16 context, std::uint32_t active,
+template <typename Repeats>
+GICODEC_INLINE I16 decode_repeats(const Repeats& tables, I16 context, std::uint32_t active,
                                   Input& in) {
   States x = load_states(in);
   const RepeatEnds ends = find_ends(tables, context);
@@ -179,7 +199,8 @@ GICODEC_INLINE I16 decode_repeats(const RepeatTables& tables, I16 context, std::
   return select(in0, set(0), select(in01, set(1), set(2)));
 }
 
-GICODEC_INLINE void encode_repeats(const Step& step, const RepeatTables& tables, Output& out) {
+template <typename Repeats>
+GICODEC_INLINE void encode_repeats(const Step& step, const Repeats& tables, Output& out) {
   const RepeatEnds ends = find_ends(tables, load(step.context));
   const I16 value = load(step.value);
   const M16 is0 = equal(value, set(0));
@@ -212,7 +233,9 @@ void price_steps(const Step* begin, const Step* end, unsigned place, const RoleT
 void encode_steps(const Step* begin, const Step* end, const Tables& tables, Output& out) {
   while (end != begin) {
     --end;
-    if (end->repeat != 0) {
+    if (end->repeat != 0 && tables.rows != nullptr) {
+      encode_repeats(*end, *tables.rows, out);
+    } else if (end->repeat != 0) {
       encode_repeats(*end, *tables.repeats, out);
     } else {
       encode_tokens(*end, *tables.role[end->place], out);

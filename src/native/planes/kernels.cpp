@@ -24,13 +24,17 @@ namespace {
 
 #include "native/planes/planes.inl"
 
+#include "native/rows/row_values.inl"
+#include "native/rows/rows.inl"
+
 #include "native/planes/estimate.inl"
 #include "native/planes/layout.inl"
 #include "native/planes/texels.inl"
 
-constexpr Kernels kKernels{unpack,       pack,          to_steps,     from_steps,  has_steps,
-                           to_lanes,     from_lanes,    model_planes, model_pairs, decode_planes,
-                           decode_pairs, decode_values, encode_steps, price_steps, cost};
+constexpr Kernels kKernels{unpack,       pack,       to_steps,     from_steps,    has_steps,
+                           to_lanes,     from_lanes, model_planes, model_pairs,   decode_planes,
+                           decode_pairs, model_rows, decode_rows,  decode_values, encode_steps,
+                           price_steps,  cost};
 
 }  // namespace
 }  // namespace gicodec::native::GICODEC_ISA

@@ -5,6 +5,7 @@
 #include "native/planes/model.h"
 #include "native/planes/planes.h"
 #include "native/planes/tables.h"
+#include "native/rows/row_strip.h"
 #include "simd/dispatch.h"
 
 #include <cstddef>
@@ -117,6 +118,9 @@ struct Kernels {
   /// The inverse. False if the input is too short.
   bool (*decode_planes)(const Group&, const Tables&, Input&);
   bool (*decode_pairs)(const Group&, const Tables&, Input&);
+  /// The same of a strip of rows.
+  Step* (*model_rows)(const RowStrip&, Step* steps);
+  bool (*decode_rows)(const RowStrip&, const Tables&, Input&);
   /// One step of the same context for all lanes.
   bool (*decode_values)(const RoleTables&, std::uint32_t active, std::uint16_t context, Input&,
                         std::uint16_t* values);

@@ -92,10 +92,23 @@ struct alignas(64) RepeatTables {
 void build_repeats(unsigned distribution, std::uint16_t end0, std::uint16_t end1,
                    RepeatTables& out) noexcept;
 
+/// Contexts of the repeats of rows.
+inline constexpr unsigned kRowRepeatContexts = 180;
+/// Distributions of repeat symbols of rows, which have more contexts.
+struct alignas(64) RowRepeats {
+  std::uint8_t map[256];
+  std::uint8_t low[2][kDistributions], high[2][kDistributions];  ///< bytes of end0 and end1
+  [[nodiscard]] std::uint32_t end(unsigned which, unsigned context) const {
+    const unsigned distribution = map[context];
+    return low[which][distribution] | static_cast<std::uint32_t>(high[which][distribution]) << 8;
+  }
+};
+
 /// What a chunk is coded by.
 struct Tables {
   const RoleTables* role[kPlaces];  ///< null where there is none
   const RepeatTables* repeats;
+  const RowRepeats* rows;  ///< of row chunks, in place of `repeats`
 };
 
 /// Static tables. Built once, at first use; thread-safe.

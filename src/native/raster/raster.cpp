@@ -19,13 +19,45 @@ bool fits_raster(const TextureDesc& desc, const Grid& box) noexcept {
   return blocks == 1 || blocks * record_count(desc.block) * desc.record.count <= kMaxRasterValues;
 }
 
+namespace {
+
+std::uint64_t row_values(const TextureDesc& desc, const Grid& box) {
+  constexpr std::uint64_t kRows = 32;
+  const std::uint64_t columns = std::uint64_t{box.x} * desc.block.x,
+                      rows = std::uint64_t{box.y} * desc.block.y,
+                      slices = std::uint64_t{box.z} * desc.block.z;
+  return (columns + kRowMargin) * ((rows + kRows - 1) / kRows * kRows) * slices * desc.record.count;
+}
+
+}  // namespace
+
+bool fits_rows(const TextureDesc& desc, const Grid& box) noexcept {
+  return fits_raster(desc, box) && row_values(desc, box) <= kMaxRowValues;
+}
+
+std::uint32_t blocks_of_raster(const TextureDesc& desc) noexcept {
+  const std::size_t values = std::size_t{record_count(desc.block)} * desc.record.count;
+  return static_cast<std::uint32_t>(std::max<std::size_t>(1, kMaxRasterValues / values));
+}
+
+std::size_t blocks_around(const Update& u, std::span<const std::uint32_t> positions) {
+  Grid first = u.desc.grid, last{};
+  for (const std::uint32_t position : positions) {
+    const Grid place = place_in_grid(u.desc.grid, u.probes[position]);
+    first = {std::min(first.x, place.x), std::min(first.y, place.y), std::min(first.z, place.z)};
+    last = {std::max(last.x, place.x), std::max(last.y, place.y), std::max(last.z, place.z)};
+  }
+  return std::size_t{last.x - first.x + 1} * (last.y - first.y + 1) * (last.z - first.z + 1);
+}
+
 std::uint64_t raster_memory(const TextureDesc& desc) noexcept {
-  // Numbers now and before, a trace of each in two slices, palettes; mixers and matches.
-  constexpr std::uint64_t kValue = 40, kFixed = 512 << 10;
+  // Ordinals now and before, a trace of each in two slices, palettes; mixers and matches. Of rows
+  // values now and before, a strip's five times, and steps.
+  constexpr std::uint64_t kValue = 40, kRowValue = 32, kFixed = 1 << 20;
   const std::uint64_t block = std::uint64_t{record_count(desc.block)} * desc.record.count;
-  return std::min(std::max<std::uint64_t>(kMaxRasterValues, block), block * block_count(desc)) *
-             kValue +
-         kFixed;
+  const std::uint64_t most = std::max<std::uint64_t>(kMaxRasterValues, block);
+  return kValue * std::min(most, block * block_count(desc)) +
+         kRowValue * std::min<std::uint64_t>(kMaxRowValues, row_values(desc, desc.grid)) + kFixed;
 }
 
 template <typename Body>

@@ -19,7 +19,14 @@ struct Update;
 inline constexpr std::size_t kMaxRasterValues = std::size_t{1} << 20;
 /// Whether a box may be a raster.
 [[nodiscard]] bool fits_raster(const TextureDesc& desc, const Grid& box) noexcept;
+/// The same of row chunks, whose strips have 32 rows with kRowMargin words beside each.
+inline constexpr std::size_t kRowMargin = 72, kMaxRowValues = std::size_t{1} << 20;
+[[nodiscard]] bool fits_rows(const TextureDesc& desc, const Grid& box) noexcept;
 
+/// Blocks that a box may have to be one, at least 1.
+[[nodiscard]] std::uint32_t blocks_of_raster(const TextureDesc& desc) noexcept;
+/// Blocks of the least box around those listed.
+[[nodiscard]] std::size_t blocks_around(const Update& u, std::span<const std::uint32_t> positions);
 /// What a thread takes at most for a texture's rasters and what is kept of their texels.
 [[nodiscard]] std::uint64_t raster_memory(const TextureDesc& desc) noexcept;
 

@@ -6,17 +6,19 @@ namespace {
 
 template <typename Coder>
 bool code_texel(Coder& coder, CounterTable& counters, ContinuousModel& model, const Place& place) {
-  auto& [raster, forms, repeats, predictor, residuals] = model;
-  if (repeats.code(coder, counters, raster, forms, place)) {
+  auto& raster = model.raster;
+  auto& forms = model.forms;
+  auto& predictor = model.predictor;
+  if (model.repeats.code(coder, counters, raster, forms, place)) {
     predictor.pass(place);
     return true;
   }
-  residuals.begin_texel();
+  model.residuals.begin_texel();
   for (unsigned k = 0; k < forms.coded().size(); ++k) {
     const Prediction prediction = predictor.predict(raster, forms, place, k);
     std::int64_t residual = 0;
-    if (!residuals.code(coder, counters, raster, forms, predictor, place, k, prediction,
-                        residual)) {
+    if (!model.residuals.code(coder, counters, raster, forms, predictor, place, k, prediction,
+                              residual)) {
       return false;
     }
     predictor.learn(raster, place, k, prediction, residual);
@@ -37,10 +39,12 @@ bool code_continuous(const ChunkCoding<Coder>& chunk) {
   raster.lay_out(u, chunk.positions);
   if constexpr (!Coder::kDecodes) {
     for (const auto position : chunk.positions) raster.load(u, position, chunk.in(position));
-    model.forms.choose(raster, chunk.palettes);
+    choose_forms(raster, chunk.palettes, model.forms, model.form_scratch);
   }
-  if (!model.forms.code(chunk.coder, raster, values)) return false;
-  model.forms.to_places(raster);
+  if (!model.forms.code(chunk.coder, raster.channels(), raster.coded_texels(), values)) {
+    return false;
+  }
+  to_places(model.forms, raster);
   model.repeats.reset(raster);
   model.predictor.reset(raster, model.forms);
   model.residuals.reset(raster, model.forms);
@@ -60,7 +64,7 @@ bool code_continuous(const ChunkCoding<Coder>& chunk) {
     }
   }
   if constexpr (Coder::kDecodes) {
-    model.forms.from_places(raster);
+    from_places(model.forms, raster);
     for (const auto position : chunk.positions) raster.store(u, position, chunk.out(position));
   }
   return true;

@@ -2,6 +2,7 @@
 // (docs/native/continuous.md).
 #pragma once
 
+#include "native/models/continuous/raster_forms.h"
 #include "native/models/continuous/texel_predictor.h"
 #include "native/models/continuous/texel_repeats.h"
 #include "native/models/continuous/texel_residuals.h"
@@ -13,6 +14,7 @@ namespace gicodec::native {
 struct ContinuousModel {
   Raster raster;
   ChannelForms forms;
+  FormScratch form_scratch;
   TexelRepeats repeats;
   TexelPredictor predictor;
   TexelResiduals residuals;

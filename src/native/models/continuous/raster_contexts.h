@@ -7,12 +7,6 @@ namespace gicodec::native {
 
 /// First number of a context's hash.
 enum RasterContext : std::uint32_t {
-  // channel_forms.cpp
-  kGap = 1,
-  kGapBefore = 2,
-  kGapsBefore = 3,
-  kGapPlace = 4,
-  kGapSign = 5,
   // texel_repeats.cpp
   kRepeat = 16,
   kRepeatAround = 17,

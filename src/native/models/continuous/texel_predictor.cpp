@@ -53,9 +53,8 @@ void TexelPredictor::reset(const Raster& raster, const ChannelForms& forms) {
   for (unsigned k = 0; k < coded_; ++k) {
     const Channel& channel = channels_.channel[channel_[k]];
     const auto& palette = forms[channel_[k]].palette;
-    largest_[k] = palette.empty() || ChannelForms::keeps_ordinals(channel)
-                      ? std::int64_t{channel.largest()}
-                      : static_cast<std::int64_t>(palette.size()) - 1;
+    largest_[k] = forms.has_places(channel_[k]) ? static_cast<std::int64_t>(palette.size()) - 1
+                                                : std::int64_t{channel.largest()};
   }
   const std::size_t row = raster.size().x, slice = row * raster.size().y;
   const std::size_t kept = (raster.size().z > 1 ? slice : row) + row + 2;

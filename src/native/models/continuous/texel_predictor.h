@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/memory.h"
-#include "native/models/continuous/channel_forms.h"
+#include "native/raster/channel_forms.h"
 #include "native/raster/place.h"
 
 #include <array>

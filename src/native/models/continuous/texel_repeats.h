@@ -2,7 +2,7 @@
 #pragma once
 
 #include "native/models/continuous/bit_contexts.h"
-#include "native/models/continuous/channel_forms.h"
+#include "native/raster/channel_forms.h"
 #include "native/raster/place.h"
 
 #include <array>

@@ -24,20 +24,6 @@ std::uint32_t signs(std::int64_t one, std::int64_t other) {
   return 3 * sign_of(one) + sign_of(other);
 }
 
-/// Of every ordinal the place of the one in the palette that is nearest, the lower of two.
-void find_nearest(const Channel& channel, const Vector<std::uint32_t>& palette,
-                  Vector<std::uint16_t>& nearest) {
-  nearest.resize(std::size_t{channel.largest()} + 1);
-  std::size_t at = 0;
-  for (std::uint32_t ordinal = 0; ordinal < nearest.size(); ++ordinal) {
-    const auto off = [&](std::size_t place) {
-      return magnitude_of(std::int64_t{palette[place]} - ordinal);
-    };
-    while (at + 1 < palette.size() && off(at + 1) < off(at)) ++at;
-    nearest[ordinal] = static_cast<std::uint16_t>(at);
-  }
-}
-
 }  // namespace
 
 struct TexelResiduals::Around {
@@ -59,7 +45,7 @@ void TexelResiduals::reset(const Raster& raster, const ChannelForms& forms) {
     large_ordinal_[k] = 1U << (channel.bits() - 1U);
     nearest_[k].clear();
     const auto& palette = forms[coded[k]].palette;
-    if (palette.size() > 1 && ChannelForms::keeps_ordinals(channel)) {
+    if (forms.has_palette_of_mantissas(coded[k])) {
       find_nearest(channel, palette, nearest_[k]);
     }
   }

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "native/models/continuous/bit_contexts.h"
-#include "native/models/continuous/channel_forms.h"
 #include "native/models/continuous/texel_predictor.h"
+#include "native/raster/channel_forms.h"
 #include "native/raster/place.h"
 
 #include <array>

@@ -1,0 +1,299 @@
+#include "native/rows/row_planes.h"
+
+#include "native/frame/workspace.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace gicodec::native {
+
+bool takes_rows(const TextureDesc& desc) noexcept { return takes_raster(desc); }
+
+namespace {
+
+Grid place_in_grid(const Grid& grid, std::uint32_t block) {
+  return {block % grid.x, block / grid.x % grid.y, block / grid.x / grid.y};
+}
+std::size_t round_up(std::size_t n, std::size_t to) { return (n + to - 1) / to * to; }
+
+/// Rows of blocks, most of which have 8 texels.
+void copy_row(std::uint16_t* to, const std::uint16_t* from, std::size_t width) {
+  if (width == 8) {
+    std::memcpy(to, from, 16);
+  } else {
+    std::memcpy(to, from, width * 2);
+  }
+}
+
+}  // namespace
+
+void RowPlanes::lay_out(const Update& u, std::span<const std::uint32_t> positions, bool zero) {
+  channels_ = channels_of(u.desc.record);
+  // Planes come in the order of components, but for the second before the first.
+  const Record& record = u.desc.record;
+  unsigned plane = 0;
+  for (unsigned i = 0; i < record.count; ++i) {
+    const unsigned offset = record.components[record.count >= 3 && i < 2 ? 1 - i : i].offset;
+    unsigned c = 0;
+    while (channels_.channel[c].component.offset != offset) ++c;
+    plane_of_[c] = static_cast<std::uint8_t>(plane);
+    plane += is_wide(c) ? 2 : 1;
+  }
+  Grid last{};
+  first_ = u.desc.grid;
+  for (const std::uint32_t position : positions) {
+    const Grid place = place_in_grid(u.desc.grid, u.probes[position]);
+    first_ = {std::min(first_.x, place.x), std::min(first_.y, place.y),
+              std::min(first_.z, place.z)};
+    last = {std::max(last.x, place.x), std::max(last.y, place.y), std::max(last.z, place.z)};
+  }
+  blocks_ = {last.x - first_.x + 1, last.y - first_.y + 1, last.z - first_.z + 1};
+  columns_ = std::size_t{blocks_.x} * u.desc.block.x;
+  rows_of_slice_ = std::size_t{blocks_.y} * u.desc.block.y;
+  rows_ = rows_of_slice_ * blocks_.z * u.desc.block.z;
+  stride_ = round_up(columns_, 8) + kMargin;
+  plane_ = (1 + rows_ + kLanes) * stride_ + 2 * kMargin;
+  const std::size_t size = channels_.count * plane_;
+  if (values_.size() < size) values_.resize(size);
+  if (zero) std::fill_n(values_.begin(), size, std::uint16_t{0});
+  for (unsigned c = 0; c < channels_.count; ++c) {
+    if (is_wide(c)) wide_[c].assign(texels(), 0);
+  }
+  block_.resize(block_stride(u.layout.planes, u.texels()));
+}
+
+template <typename Body>
+void RowPlanes::for_each_row(const Update& u, std::uint32_t block, const Body& body) const {
+  const auto& b = u.desc.block;
+  const Grid place = place_in_grid(u.desc.grid, block);
+  const std::size_t x0 = std::size_t{place.x - first_.x} * b.x,
+                    y0 = std::size_t{place.y - first_.y} * b.y,
+                    z0 = std::size_t{place.z - first_.z} * b.z;
+  std::size_t value = 0;
+  for (std::size_t z = z0; z < z0 + b.z; ++z) {
+    for (std::size_t y = y0; y < y0 + b.y; ++y, value += b.x) {
+      body(value, z * rows_of_slice_ + y, x0);
+    }
+  }
+}
+
+void RowPlanes::load_mirror(const Update& u) {
+  const Grid& grid = u.desc.grid;
+  for (std::uint32_t z = first_.z; z < first_.z + blocks_.z; ++z) {
+    for (std::uint32_t y = first_.y; y < first_.y + blocks_.y; ++y) {
+      for (std::uint32_t x = first_.x; x < first_.x + blocks_.x; ++x) {
+        const std::uint32_t block = x + grid.x * (y + grid.y * z);
+        if (u.mirror.is_received(block)) load(u, block, u.mirror.blocks[block]);
+      }
+    }
+  }
+}
+
+void RowPlanes::load(const Update& u, std::uint32_t block, std::span<const std::byte> records) {
+  u.kernels.unpack(u.layout, reinterpret_cast<const std::uint8_t*>(records.data()), u.texels(),
+                   block_.data());
+  const std::size_t width = u.desc.block.x, texels = u.texels();
+  // Pairs are unpacked to R and G − 2·R.
+  for (std::size_t i = 0; i < texels && u.layout.pairs; ++i) {
+    block_[texels + i] = static_cast<std::uint16_t>(block_[texels + i] + 2 * block_[i]);
+  }
+  for (unsigned c = 0; c < channels_.count; ++c) {
+    const std::uint16_t* const high = block_.data() + plane_of_[c] * u.texels();
+    const std::uint16_t* const low = high + u.texels();
+    for_each_row(u, block, [&](std::size_t value, std::size_t y, std::size_t x) {
+      if (!is_wide(c)) {
+        copy_row(row(c, y) + x, high + value, width);
+        return;
+      }
+      std::uint32_t* const to = wide(c, y) + x;
+      for (std::size_t i = 0; i < width; ++i) {
+        to[i] = static_cast<std::uint32_t>(high[value + i]) << 16 | low[value + i];
+      }
+    });
+  }
+}
+
+void RowPlanes::store(const Update& u, std::uint32_t position, std::span<std::byte> records) {
+  const std::size_t width = u.desc.block.x;
+  for (unsigned c = 0; c < channels_.count; ++c) {
+    std::uint16_t* const high = block_.data() + plane_of_[c] * u.texels();
+    std::uint16_t* const low = high + u.texels();
+    for_each_row(u, u.probes[position], [&](std::size_t value, std::size_t y, std::size_t x) {
+      if (!is_wide(c)) {
+        copy_row(high + value, row(c, y) + x, width);
+        return;
+      }
+      const std::uint32_t* const from = wide(c, y) + x;
+      for (std::size_t i = 0; i < width; ++i) {
+        high[value + i] = static_cast<std::uint16_t>(from[i] >> 16);
+        low[value + i] = static_cast<std::uint16_t>(from[i]);
+      }
+    });
+  }
+  for (std::size_t i = 0; i < u.texels() && u.layout.pairs; ++i) {
+    block_[u.texels() + i] = static_cast<std::uint16_t>(block_[u.texels() + i] - 2 * block_[i]);
+  }
+  u.kernels.pack(u.layout, block_.data(), u.texels(),
+                 reinterpret_cast<std::uint8_t*>(records.data()));
+  if (!u.partial()) return;
+  const BlockPresence presence(u.desc, u.presence_of(position));
+  const std::size_t size = u.desc.record.bytes;
+  for (std::uint32_t r = 0; r < u.texels(); ++r) {
+    if (presence.exists(r)) continue;
+    std::fill_n(records.begin() + static_cast<std::ptrdiff_t>(r * size), size, std::byte{0});
+  }
+}
+
+template <typename Body>
+void RowPlanes::for_each_value(unsigned channel, const Body& body) {
+  for (std::size_t y = 0; y < rows_; ++y) {
+    std::uint16_t* const values = row(channel, y);
+    for (std::size_t x = 0; x < columns_; ++x) body(values[x]);
+  }
+}
+
+void RowPlanes::flip(unsigned c) {
+  const std::uint32_t sign = 1U << (channels_.channel[c].bits() - 1U);
+  for_each_value(
+      c, [sign](std::uint16_t& value) { value = static_cast<std::uint16_t>(value ^ sign); });
+}
+
+void RowPlanes::to_ordinals() {
+  for (unsigned c = 0; c < channels_.count; ++c) {
+    const Component& component = channels_.channel[c].component;
+    if (is_wide(c)) {
+      for (auto& value : wide_[c]) value = ordinal_of(component, value);
+    } else if (component.type == ComponentType::snorm) {
+      flip(c);
+    } else if (component.type == ComponentType::sfloat) {
+      // As ordinal_of(), without a branch.
+      for_each_value(c, [](std::uint16_t& value) {
+        const int negative = static_cast<std::int16_t>(value) >> 15;
+        value = static_cast<std::uint16_t>(value ^ (negative | 0x8000));
+      });
+    }
+  }
+}
+
+void RowPlanes::to_bits() {
+  for (unsigned c = 0; c < channels_.count; ++c) {
+    const Component& component = channels_.channel[c].component;
+    if (is_wide(c)) {
+      for (auto& value : wide_[c]) value = bits_of(component, value);
+    } else if (component.type == ComponentType::snorm) {
+      flip(c);
+    } else if (component.type == ComponentType::sfloat) {
+      for_each_value(c, [](std::uint16_t& value) {
+        const int negative = ~(static_cast<std::int16_t>(value) >> 15);
+        value = static_cast<std::uint16_t>(value ^ (negative | 0x8000));
+      });
+    }
+  }
+}
+
+/// Into `ordinals_`; false if those of a wide channel are too many.
+bool RowPlanes::find_ordinals(unsigned c) {
+  ordinals_.clear();
+  if (!is_wide(c)) {
+    occurs_.assign(std::size_t{1} << channels_.channel[c].bits(), 0);
+    for_each_value(c, [occurs = occurs_.data()](std::uint16_t value) { occurs[value] = 1; });
+    for (std::uint32_t n = 0; n < occurs_.size(); ++n) {
+      if (occurs_[n] != 0) ordinals_.push_back(n);
+    }
+    return true;
+  }
+  // Sorted and without doubles each time that as many came again: most channels have too many.
+  constexpr std::size_t kFew = 1024;
+  std::size_t known = 0;
+  const auto tidy = [&] {
+    std::sort(ordinals_.begin(), ordinals_.end());
+    ordinals_.erase(std::unique(ordinals_.begin(), ordinals_.end()), ordinals_.end());
+    known = ordinals_.size();
+    return known < texels() / 4 + 2 && known <= UINT16_MAX;
+  };
+  for (const std::uint32_t value : wide_[c]) {
+    if (!ordinals_.empty() && ordinals_.back() == value) continue;
+    ordinals_.push_back(value);
+    if (ordinals_.size() >= 2 * known + kFew && !tidy()) return false;
+  }
+  return tidy();
+}
+
+bool RowPlanes::is_copy(unsigned c, unsigned of) {
+  if (is_wide(c)) return wide_[c] == wide_[of];
+  for (std::size_t y = 0; y < rows_; ++y) {
+    if (std::memcmp(row(c, y), row(of, y), columns_ * 2) != 0) return false;
+  }
+  return true;
+}
+
+bool RowPlanes::choose_forms(ChannelForms& forms) {
+  forms.begin(channels_);
+  for (unsigned c = 0; c < channels_.count; ++c) {
+    const bool found = find_ordinals(c);
+    bool copied = false;
+    for (unsigned a = 0; a < c && !copied && (!found || ordinals_.size() > 1); ++a) {
+      copied = forms.may_copy(c, a) && is_copy(c, a);
+      if (copied) forms.choose_copy(c, a);
+    }
+    if (copied) continue;
+    if (!found) return false;
+    forms.choose(c, ordinals_, texels(), true);
+    if (is_wide(c) && forms[c].form == Form::plain) return false;
+  }
+  return true;
+}
+
+void RowPlanes::to_places(const ChannelForms& forms) {
+  for (unsigned c = 0; c < channels_.count; ++c) {
+    if (!forms.has_places(c)) continue;
+    if (is_wide(c)) {
+      for (std::size_t y = 0; y < rows_; ++y) {
+        const std::uint32_t* const from = wide(c, y);
+        std::uint16_t* const to = row(c, y);
+        for (std::size_t x = 0; x < columns_; ++x) {
+          to[x] = x > 0 && from[x] == from[x - 1]
+                      ? to[x - 1]
+                      : static_cast<std::uint16_t>(forms.place_of(c, from[x]));
+        }
+      }
+      continue;
+    }
+    const auto& palette = forms[c].palette;
+    table_.resize(std::size_t{1} << channels_.channel[c].bits());
+    std::uint16_t place = 0;
+    for (std::uint32_t ordinal = 0; ordinal < table_.size(); ++ordinal) {
+      while (place + 1U < palette.size() && palette[place] < ordinal) ++place;
+      table_[ordinal] = place;
+    }
+    for_each_value(c, [table = table_.data()](std::uint16_t& value) { value = table[value]; });
+  }
+}
+
+void RowPlanes::from_places(const ChannelForms& forms) {
+  for (unsigned c = 0; c < channels_.count; ++c) {
+    const ChannelForm& form = forms[c];
+    if (form.form == Form::copy && is_wide(c)) {
+      std::copy(wide_[form.of].begin(), wide_[form.of].end(), wide_[c].begin());
+    } else if (form.form == Form::copy) {
+      for (std::size_t y = 0; y < rows_; ++y) {
+        std::memcpy(row(c, y), row(form.of, y), columns_ * 2);
+      }
+    } else if (forms.is_constant(c) && is_wide(c)) {
+      std::fill(wide_[c].begin(), wide_[c].end(), form.palette[0]);
+    } else if (forms.is_constant(c)) {
+      for_each_value(c, [&](std::uint16_t& v) { v = static_cast<std::uint16_t>(form.palette[0]); });
+    } else if (forms.has_places(c) && is_wide(c)) {
+      for (std::size_t y = 0; y < rows_; ++y) {
+        const std::uint16_t* const from = row(c, y);
+        std::uint32_t* const to = wide(c, y);
+        for (std::size_t x = 0; x < columns_; ++x) to[x] = form.palette[from[x]];
+      }
+    } else if (forms.has_places(c)) {
+      table_.assign(form.palette.begin(), form.palette.end());
+      for_each_value(c, [table = table_.data()](std::uint16_t& value) { value = table[value]; });
+    }
+  }
+}
+
+}  // namespace gicodec::native

@@ -1,0 +1,156 @@
+// Strips of a raster's rows ↔ lanes (docs/native/rows.md, "Strips").
+#include "native/frame/workspace.h"
+#include "native/rows/row_chunk.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace gicodec::native {
+namespace {
+
+/// Values that are moved at once.
+constexpr std::size_t kTile = 8;
+
+std::size_t tiled_steps(const RowPlanes& planes) {
+  return (row_steps(planes.columns()) + kTile - 1) / kTile * kTile;
+}
+
+/// Rows from `y` on, each as far before its begin as its lane is behind.
+std::array<std::uint16_t*, kLanes> skewed_rows(RowPlanes& planes, unsigned channel, std::size_t y) {
+  std::array<std::uint16_t*, kLanes> rows;
+  for (std::size_t l = 0; l < kLanes; ++l) {
+    rows[l] = planes.row(channel, y + l) - kRowDelay * l;
+  }
+  return rows;
+}
+
+enum class From { here, above };
+/// Rows from `y` on, or those above them.
+void skew(const Kernels& kernels, RowPlanes& planes, unsigned channel, std::size_t y, From from,
+          std::uint16_t* lanes) {
+  const std::uint16_t* rows[kLanes];
+  for (std::size_t l = 0; l < kLanes; ++l) {
+    const std::uint16_t* const row =
+        from == From::here ? planes.row(channel, y + l) : planes.row_above(channel, y + l);
+    rows[l] = row - kRowDelay * l;
+  }
+  kernels.to_lanes(rows, tiled_steps(planes), lanes);
+}
+
+/// Of lanes that follow a step that does not exist.
+void make_room(const RowPlanes& planes, Vector<std::uint16_t>& lanes) {
+  lanes.assign((1 + tiled_steps(planes)) * kLanes, 0);
+}
+
+}  // namespace
+
+void load_past(const Update& u, std::span<const std::uint32_t> positions, RowMemory& memory) {
+  memory.past.lay_out(u, positions, true);
+  memory.past.load_mirror(u);
+  memory.past.to_ordinals();
+  memory.past.to_places(memory.forms);
+}
+
+RowStrip prepare_strips(bool update, RowMemory& memory) {
+  RowPlanes& planes = memory.planes;
+  const ChannelForms& forms = memory.forms;
+  const Channels& channels = planes.channels();
+  const auto coded = forms.coded();
+  const std::size_t columns = planes.columns(), above = above_stride(columns);
+  RowStrip strip{};
+  strip.columns = static_cast<unsigned>(columns);
+  strip.update = update;
+  strip.channels = static_cast<unsigned>(coded.size());
+  const bool exponents = channels.shared && !coded.empty() && coded[0] == 0;
+  strip.lead = exponents ? 1 : 0;
+  for (unsigned k = 0; k < strip.channels; ++k) {
+    const Channel& channel = channels.channel[coded[k]];
+    const auto& palette = forms[coded[k]].palette;
+    RowChannel& to = strip.channel[k];
+    memory.lanes[k].resize(tiled_steps(planes) * kLanes);
+    const bool slices = planes.rows() > planes.rows_of_slice();
+    for (auto* lanes : {&memory.slice[k], &memory.slice_above[k]}) {
+      if (slices) make_room(planes, *lanes);
+    }
+    for (auto* lanes : {&memory.past_lanes[k], &memory.past_above[k]}) {
+      if (update) make_room(planes, *lanes);
+    }
+    to.slice = memory.slice[k].data() + kLanes;
+    to.slice_above = memory.slice_above[k].data() + kLanes;
+    to.past = memory.past_lanes[k].data() + kLanes;
+    to.past_above = memory.past_above[k].data() + kLanes;
+    memory.above[k].assign(kRowTrail * above, 0);
+    to.values = memory.lanes[k].data();
+    to.above = memory.above[k].data();
+    to.largest = static_cast<std::uint16_t>(channel.largest());
+    to.bits = channel.bits();
+    to.in_units = channel.in_units && exponents;
+    to.last_place = to.largest;
+    if (forms.has_places(coded[k])) {
+      to.largest = static_cast<std::uint16_t>(palette.size() - 1);
+      to.bits = static_cast<unsigned>(std::bit_width(palette.size() - 1));
+    }
+    if (forms.has_palette_of_mantissas(coded[k])) {
+      find_nearest(channel, palette, memory.nearest[k]);
+      memory.palette[k].assign(palette.begin(), palette.end());
+      to.nearest = memory.nearest[k].data();
+      to.palette = memory.palette[k].data();
+      to.last_place = static_cast<std::uint16_t>(palette.size() - 1);
+      to.bits = static_cast<unsigned>(std::bit_width(palette.size() - 1));
+    }
+  }
+  memory.above_repeats.assign(above, 0);
+  memory.trail.resize(trail_size(strip.channels));
+  strip.above = memory.above_repeats.data();
+  strip.trail = memory.trail.data();
+  return strip;
+}
+
+RowClasses classes_of(const RowStrip& strip) {
+  const unsigned followers = strip.channels > strip.lead ? strip.channels - strip.lead - 1 : 0;
+  return {strip.lead + 1, followers == 0 ? 0 : followers == 1 ? 2U : 4U};
+}
+
+void move_to(const Kernels& kernels, RowStrip& strip, RowMemory& memory, std::size_t y) {
+  RowPlanes& planes = memory.planes;
+  const std::size_t slice = planes.rows_of_slice(), left = slice - y % slice;
+  strip.rows = static_cast<unsigned>(std::min<std::size_t>(kLanes, left));
+  strip.first = left == slice;
+  strip.deep = y >= slice;
+  if (strip.first) {
+    for (unsigned k = 0; k < strip.channels; ++k) {
+      std::fill(memory.above[k].begin(), memory.above[k].end(), std::uint16_t{0});
+    }
+    std::fill(memory.above_repeats.begin(), memory.above_repeats.end(), std::uint16_t{0});
+  }
+  for (unsigned k = 0; k < strip.channels; ++k) {
+    const unsigned channel = memory.forms.coded()[k];
+    const auto load = [&](RowPlanes& from, std::size_t row, Vector<std::uint16_t>& there,
+                          Vector<std::uint16_t>& above) {
+      skew(kernels, from, channel, row, From::here, there.data() + kLanes);
+      skew(kernels, from, channel, row, From::above, above.data() + kLanes);
+    };
+    if (strip.deep) load(planes, y - slice, memory.slice[k], memory.slice_above[k]);
+    if (strip.update) load(memory.past, y, memory.past_lanes[k], memory.past_above[k]);
+  }
+}
+
+void load_lanes(const Kernels& kernels, RowMemory& memory, std::size_t y) {
+  for (unsigned k = 0; k < memory.forms.coded().size(); ++k) {
+    skew(kernels, memory.planes, memory.forms.coded()[k], y, From::here, memory.lanes[k].data());
+  }
+}
+
+void store_lanes(const Kernels& kernels, RowMemory& memory, const RowStrip& strip, std::size_t y) {
+  for (unsigned k = 0; k < strip.channels; ++k) {
+    auto rows = skewed_rows(memory.planes, memory.forms.coded()[k], y);
+    // Lanes without a row go behind the last one.
+    for (unsigned l = strip.rows; l < kLanes; ++l) {
+      rows[l] =
+          memory.planes.row(memory.forms.coded()[k], memory.planes.rows() + l) - kRowDelay * l;
+    }
+    kernels.from_lanes(memory.lanes[k].data(), tiled_steps(memory.planes), rows.data());
+  }
+}
+
+}  // namespace gicodec::native
