@@ -135,7 +135,7 @@ TEST(Golden, BlocksOfEveryShape) {
 }
 
 TEST(Golden, NativePresets) {
-  for (const std::string preset : {"fast", "strong"}) {
+  for (const std::string preset : {"fast", "strong", "turbo"}) {
     const auto bytes = load("native_" + preset + ".gic");
     MemorySource source(bytes.span());
     auto reader = ContainerReader::open(source);
@@ -306,9 +306,9 @@ TEST(Golden, IndicesOfOtherPackets) {
 }
 
 TEST(Golden, EveryFileIsTested) {
-  std::set<std::string> known{"README.md",       "golden.h",        "make_golden.cpp",
-                              "native_golden.h", "native_fast.gic", "native_strong.gic",
-                              "volumes.gic"};
+  std::set<std::string> known{"README.md",        "golden.h",        "make_golden.cpp",
+                              "native_golden.h",  "native_fast.gic", "native_strong.gic",
+                              "native_turbo.gic", "volumes.gic"};
   for (const auto& [name, desc] : golden::block_textures()) {
     for (const char* number : {"_1", "_2"}) {
       known.insert("blocks_" + std::string(name) + number + ".packet");

@@ -70,8 +70,12 @@ RC_GTEST_PROP(GuardBandSection, WriteAndReadAreInverse, (std::uint64_t seed)) {
 
   for (std::size_t size = 0; size < section.size(); ++size) {
     const Exact cut{std::span(section).first(size)};
-    StaleBands none;
-    RC_ASSERT(read_guard_band_section(desc, update, cut.span(), memory, none) != Status::ok);
+    // The binary coder takes any bytes, the same bands from no others.
+    StaleBands other;
+    if (read_guard_band_section(desc, update, cut.span(), memory, other) == Status::ok) {
+      resolve_guard_bands(context, other);
+      RC_ASSERT(!(other == stale));
+    }
     if (size > 40 && size + 40 < section.size()) size += 30;
   }
 }
@@ -93,7 +97,7 @@ TEST(GuardBandSection, SectionsThatBreakTheFormat) {
   const auto sound = [&](std::initializer_list<int> head, std::size_t bytes) {
     return read(head, bytes, desc, {0, 1, 3});
   };
-  constexpr int kAll = 0, kBitmap = 1, kGaps = 2, kNone = 0, kLz4 = 1, kZstd = 2;
+  constexpr int kAll = 0, kBitmap = 1, kGaps = 2, kNone = 0, kCoded = 1;
   EXPECT_EQ(sound({kAll, 3, 0, kNone}, 3 * band), Status::ok);
   EXPECT_EQ(sound({kBitmap, 1, 1, 4, kNone}, band), Status::ok);
   EXPECT_EQ(sound({kAll, 3, 0, kNone}, 3 * band + 1), Status::corrupt);
@@ -103,9 +107,9 @@ TEST(GuardBandSection, SectionsThatBreakTheFormat) {
   EXPECT_EQ(sound({kBitmap, 1, 1, 8, kNone}, band), Status::corrupt);  // Place 3 of 3.
   EXPECT_EQ(sound({kGaps, 0, 0, kNone}, 0), Status::corrupt);          // No band at all.
   EXPECT_EQ(sound({4, 3, 0, kNone}, 3 * band), Status::corrupt);
-  EXPECT_EQ(sound({kAll, 3, 0, kLz4}, 3 * band), Status::unsupported_feature);
+  EXPECT_EQ(sound({kAll, 3, 0, kCoded + 1}, 3 * band), Status::unsupported_feature);
   EXPECT_EQ(sound({kAll, 3, 0, 255}, 3 * band), Status::unsupported_feature);
-  EXPECT_EQ(sound({kAll, 3, 0, kZstd}, 3 * band), Status::corrupt);
+  EXPECT_EQ(sound({kAll, 3, 0, kCoded}, 3 * band), Status::corrupt);
   EXPECT_EQ(sound({}, 0), Status::truncated);
   EXPECT_EQ(read({kAll, 1, 0, kNone}, band, desc, {}), Status::corrupt);
   TextureDesc bare = desc;

@@ -1,7 +1,7 @@
 #include "bitstream/index_buffer.h"
 
-#include "base/binary_coder.h"
 #include "base/bits.h"
+#include "base/learned_bit.h"
 
 #include <algorithm>
 #include <array>
@@ -102,44 +102,27 @@ class RunModel {
   }
 
  private:
-  struct Counter {
-    std::uint32_t one = 1U << (kBitScale - 1);  ///< probability of a 1
-    std::uint32_t asked = 0;
-  };
   static constexpr unsigned kSkip = 0, kMore = 1, kMaxWidth = 25, kDigits = 2;
-  static constexpr std::uint32_t kLikely = 58982, kMaxAsked = 30, kFar = 16;
-  /// Bounds probabilities, so that every bit costs bytes and time stays in proportion to them.
-  static constexpr std::uint32_t kMin = 1U << (kBitScale - 6);
-
-  template <typename Coder>
-  static bool bit(Coder& coder, Counter& counter, bool value) {
-    const bool one = coder.bit(std::clamp(counter.one, kMin, (1U << kBitScale) - kMin), value);
-    const std::uint32_t rate = (2U << kBitScale) / (2 * counter.asked + 3);
-    const std::uint32_t off = one ? (1U << kBitScale) - 1 - counter.one : counter.one;
-    const auto step = static_cast<std::uint32_t>(std::uint64_t{off} * rate >> kBitScale);
-    counter.one = one ? counter.one + step : counter.one - step;
-    counter.asked = std::min(counter.asked + 1, kMaxAsked);
-    return one;
-  }
+  static constexpr std::uint32_t kLikely = 58982, kFar = 16;
 
   template <typename Coder>
   std::uint32_t number(Coder& coder, unsigned kind, std::uint32_t value) {
     const auto value_width = static_cast<unsigned>(std::bit_width(value + 1));
     unsigned width = 1;
-    while (width < kMaxWidth && bit(coder, wider_[kind][far_][width], value_width > width)) ++width;
+    while (width < kMaxWidth && wider_[kind][far_][width].code(coder, value_width > width)) ++width;
     std::uint32_t read = 1;
     unsigned left = width - 1;
     for (unsigned digit = 0; digit < kDigits && left > 0; ++digit) {
       --left;
-      Counter& counter = digit_[kind][width][read];
-      read = read << 1 | (bit(coder, counter, ((value + 1) >> left & 1) != 0) ? 1U : 0U);
+      LearnedBit& learned = digit_[kind][width][read];
+      read = read << 1 | (learned.code(coder, ((value + 1) >> left & 1) != 0) ? 1U : 0U);
     }
     if (left > 0) read = read << left | coder.bypass(left, (value + 1) & ((1U << left) - 1));
     return read - 1;
   }
 
-  std::array<std::array<std::array<Counter, kMaxWidth>, 2>, 2> wider_;
-  std::array<std::array<std::array<Counter, 1U << kDigits>, kMaxWidth + 1>, 2> digit_;
+  std::array<std::array<std::array<LearnedBit, kMaxWidth>, 2>, 2> wider_;
+  std::array<std::array<std::array<LearnedBit, 1U << kDigits>, kMaxWidth + 1>, 2> digit_;
   bool far_ = false;  ///< the last skip was long
 };
 

@@ -1,9 +1,9 @@
 #include "stream/guard_band_section.h"
 
 #include "base/bytes.h"
-#include "base/compressor.h"
 #include "base/parallel.h"
 #include "bitstream/index_buffer.h"
+#include "stream/band_differences.h"
 #include "texture/guard_band.h"
 
 #include <algorithm>
@@ -14,7 +14,8 @@ namespace gicodec {
 namespace {
 
 // Section: mode of the place buffer, the number of bands, the place buffer's size and bytes, then
-// the compression of the differences and the differences.
+// how the differences are coded, and the differences.
+enum class BandCoding : std::uint8_t { plain = 0, coded = 1 };
 constexpr std::size_t kMaxHead = 1 + 5 + 5 + 1;  // bytes without place buffer and differences
 constexpr std::size_t kMaxBand = std::size_t{4} * (kMaxBlockSide + 1) * kMaxRecordBytes;
 
@@ -50,7 +51,7 @@ std::size_t guard_band_section_bound(const TextureDesc& desc, std::size_t blocks
 
 Status write_guard_band_section(const GuardBandContext& context, const StaleBands& stale,
                                 GuardBandMemory& memory, std::vector<std::byte>& out) {
-  auto& [places, bands, place_bytes, packed, compressor, decompressor] = memory;
+  auto& [places, bands, place_bytes, packed] = memory;
   places.clear(), bands.clear(), place_bytes.clear(), packed.clear();
   std::array<std::byte, kMaxBand> buffer;
   const auto predicted = std::span(buffer).first(band_bytes(context.desc));
@@ -65,13 +66,7 @@ Status write_guard_band_section(const GuardBandContext& context, const StaleBand
   const auto mode =
       encode_index_buffer(places, static_cast<std::uint32_t>(context.blocks.size()), place_bytes);
 
-  if (!compressor) {
-    auto made = Compressor::create(Compression::zstd, 0);
-    if (!made) return made.status();
-    compressor = *std::move(made);
-  }
-  const Status status = compressor->compress(bands, packed);
-  if (status != Status::ok) return status;
+  encode_differences(bands, context.desc.record.bytes, packed);
   const bool pays = packed.size() < bands.size();
 
   ByteWriter writer(out);
@@ -79,7 +74,7 @@ Status write_guard_band_section(const GuardBandContext& context, const StaleBand
   writer.varint(places.size());
   writer.varint(place_bytes.size());
   writer.bytes(place_bytes);
-  writer.fixed(static_cast<std::uint8_t>(pays ? Compression::zstd : Compression::none));
+  writer.fixed(static_cast<std::uint8_t>(pays ? BandCoding::coded : BandCoding::plain));
   writer.bytes(pays ? std::span<const std::byte>(packed) : std::span<const std::byte>(bands));
   return Status::ok;
 }
@@ -90,7 +85,7 @@ struct SectionParts {
   IndexMode mode;
   std::uint32_t count;
   std::span<const std::byte> places, bands;
-  Compression method;
+  BandCoding coding;
 };
 
 /// All checks that do not need the update's blocks.
@@ -102,18 +97,16 @@ Result<SectionParts> parse_section(const TextureDesc& desc, std::uint32_t blocks
   const auto count = static_cast<std::uint32_t>(reader.varint(blocks));
   const auto places =
       reader.bytes(static_cast<std::size_t>(reader.varint(index_buffer_bound(blocks))));
-  const auto method = static_cast<Compression>(reader.fixed<std::uint8_t>());
+  const auto coding = static_cast<BandCoding>(reader.fixed<std::uint8_t>());
   if (!reader.ok()) return reader.status();
   if (mode > IndexMode::runs || count == 0) return Status::corrupt;
-  if (method != Compression::none && method != Compression::zstd) {
-    return Status::unsupported_feature;
-  }
-  Status status = check_index_buffer(mode, count, blocks, places);
-  if (status == Status::ok) {
-    status = check_compressed(method, reader.rest(), count * band_bytes(desc));
-  }
+  if (coding > BandCoding::coded) return Status::unsupported_feature;
+  const Status status = check_index_buffer(mode, count, blocks, places);
   if (status != Status::ok) return status;
-  return SectionParts{mode, count, places, reader.rest(), method};
+  const std::size_t size = reader.rest().size(), bytes = count * band_bytes(desc);
+  if (coding == BandCoding::plain && size != bytes) return Status::corrupt;
+  if (coding == BandCoding::coded && most_differences(size) < bytes) return Status::truncated;
+  return SectionParts{mode, count, places, reader.rest(), coding};
 }
 
 }  // namespace
@@ -135,16 +128,11 @@ Status read_guard_band_section(const TextureDesc& desc, std::span<const std::uin
   if (status != Status::ok) return status;
   for (std::uint32_t& place : places) place = update[place];
   differences.assign(places, band_bytes(desc));
-  if (parts->method == Compression::none) {
+  if (parts->coding == BandCoding::plain) {
     std::copy(parts->bands.begin(), parts->bands.end(), differences.bytes().begin());
     return Status::ok;
   }
-  if (!memory.decompressor) {
-    auto made = Decompressor::create(parts->method);
-    if (!made) return made.status();
-    memory.decompressor = *std::move(made);
-  }
-  return memory.decompressor->decompress(parts->bands, differences.bytes());
+  return decode_differences(parts->bands, desc.record.bytes, differences.bytes());
 }
 
 void resolve_guard_bands(const GuardBandContext& context, StaleBands& bands) noexcept {

@@ -6,13 +6,11 @@
 #include <gicodec/status.h>
 #include <gicodec/texture.h>
 
-#include "base/compressor.h"
 #include "base/memory.h"
 #include "texture/stale_bands.h"
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -39,8 +37,6 @@ struct GuardBandMemory {
   Vector<std::uint32_t> places = {};
   Vector<std::byte> bands = {};
   std::vector<std::byte> place_bytes = {}, packed = {};
-  std::optional<Compressor> compressor = {};
-  std::optional<Decompressor> decompressor = {};
 };
 
 /// Appends the section for `stale`. Precondition: not empty, each block among context.blocks.

@@ -314,7 +314,7 @@ void bad_descriptions() {
   save_said("more_textures", {.textures = 2});
   save_said("texture_name", {.name = "viz"});
   save_said("kind", {.kind = 0});
-  save_said("format", {.told = told(bytes({77}))});
+  save_said("format", {.told = told(bytes({86}))});
   // Two components of a bit less than the record, of one bit twice, and one across 32 bits.
   const auto component = [](int at, int bits) { return bytes({1, 'a', at, bits, 0}); };
   save_said("record_gap", {.told = told(bytes({0, 2, 2}) + component(0, 8) + component(9, 7))});
@@ -415,7 +415,7 @@ int main(int argc, char** argv) {
   }
   for (const auto mode : kIndexModes)
     save("index_" + std::string(mode) + ".packet", index_packet(mode));
-  for (const std::string preset : {"fast", "strong"}) {
+  for (const std::string preset : {"fast", "strong", "turbo"}) {
     save("native_" + preset + ".gic", native_sequence(preset));
   }
   volumes();

@@ -88,7 +88,8 @@ TEST_P(NativeGolden, ReferenceDecoderReadsIt) {
 INSTANTIATE_TEST_SUITE_P(Files, NativeGolden,
                          testing::Values(Files{"sequence_native.gic", golden::paint, 10},
                                          Files{"native_fast.gic", golden::paint_native, 1},
-                                         Files{"native_strong.gic", golden::paint_native, 1}),
+                                         Files{"native_strong.gic", golden::paint_native, 1},
+                                         Files{"native_turbo.gic", golden::paint_native, 1}),
                          [](const auto& test) {
                            return test.param.name.substr(0, test.param.name.find('.'));
                          });

@@ -172,7 +172,7 @@ TEST(NativeHostile, NoiseBehindASoundHead) {
   const int rounds = test::everything() ? 300 : 60;
   for (auto& u : cases()) {
     for (int round = 0; round < rounds; ++round) {
-      Bytes payload = {std::byte{2}};
+      Bytes payload = {std::byte{native::kVersion}};
       Bytes chunk = test::noise(random, test::pick(random, 3, 120));
       chunk[0] = std::byte(1 | test::pick(random, 0, 5) << 2 | test::pick(random, 0, 7) << 5);
       chunk[1] = chunk[2] = std::byte{0};
@@ -187,13 +187,14 @@ TEST(NativeHostile, NoiseBehindASoundHead) {
 TEST(NativeHostile, BoxesOutOfRange) {
   auto u = test::make_update(ddgi_irradiance({4, 4, 4}), test::Content::smooth, true, 1, 1);
   for (const Grid box : {Grid{0, 1, 1}, Grid{5, 4, 4}, Grid{4, 4, 0}}) {
-    Bytes payload = {std::byte{2 | 1 << 4}};
+    Bytes payload = {std::byte{native::kVersion | 1 << 4}};
     for (const auto side : {box.x, box.y, box.z, 0U}) {
       payload.insert(payload.end(), {std::byte(side), std::byte{0}});
     }
     EXPECT_EQ(attempt(u, payload, best_isa()).status, Status::corrupt);
   }
-  EXPECT_EQ(attempt(u, Bytes{std::byte{3}}, best_isa()).status, Status::unsupported_version);
+  EXPECT_EQ(attempt(u, Bytes{std::byte{native::kVersion + 1}}, best_isa()).status,
+            Status::unsupported_version);
 }
 
 }  // namespace

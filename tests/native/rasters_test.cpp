@@ -254,7 +254,7 @@ TEST(NativeRasters, BoxesAreBounded) {
   u.blocks = {0, 128 * 128 - 1};
   u.records.resize(2 * block_bytes(desc));
   for (const std::uint8_t kind : {native::kAdaptiveChunk, native::kRowChunk}) {
-    Bytes payload = {std::byte{2 | 8 << 4}, std::byte{kind}};
+    Bytes payload = {std::byte{native::kVersion | 8 << 4}, std::byte{kind}};
     payload.resize(20);
     EXPECT_EQ(decoded(u, payload), Status::corrupt);
   }
@@ -264,7 +264,7 @@ TEST(NativeRasters, PalettesMustFit) {
   const TextureDesc desc = map_texture(Format::R8_UNORM, {1, 1, 1}, {4, 4, 1});
   const auto u = test::make_update(desc, test::Content::constant, true, 1, 1);
   const auto with = [&](std::uint32_t count, std::uint32_t first) {
-    Bytes payload = {std::byte{2}, std::byte{native::kAdaptiveChunk}};
+    Bytes payload = {std::byte{native::kVersion}, std::byte{native::kAdaptiveChunk}};
     BinaryEncoder coder(payload);
     coder.bypass(2, 1);
     coder.bypass(24, count);

@@ -33,7 +33,7 @@ class Decoder {
   std::optional<std::vector<std::byte>> payload(std::span<const std::byte> bytes) {
     Bytes in(bytes);
     const unsigned head = in.u8(), parts = head >> 4;
-    if (in.failed() || (head & 15) != 2 || (parts & 9) == 9) return {};
+    if (in.failed() || (head & 15) != 3 || (parts & 9) == 9) return {};
     if ((parts & 8) != 0) {
       choose_box(1U << 20);
     } else if ((parts & 1) == 0) {

@@ -9,7 +9,7 @@
 
 namespace gicodec::native {
 
-inline constexpr std::uint8_t kVersion = 2;
+inline constexpr std::uint8_t kVersion = 3;
 using gicodec::kLanes;
 inline constexpr unsigned kModes = 8;
 inline constexpr unsigned kMaxPlanes = 32;
