@@ -22,6 +22,7 @@ using test::Bytes;
 native::PayloadSettings strong() {
   native::PayloadSettings settings;
   settings.chunk.strong = true;
+  settings.chunk.rows = false;
   return settings;
 }
 

@@ -131,7 +131,7 @@ void find_frequent(const Update& u, Workspace& w, ChunkHead& head) {
 /// Whether rows that reach over blocks are worth their time: where most of their box is listed.
 bool rows_pay(const Update& u, const EncodeSettings& settings,
               std::span<const std::uint32_t> positions) {
-  if (settings.set >= 0 || settings.lanes != 0 || settings.observe) return false;
+  if (!settings.rows || settings.set >= 0 || settings.lanes != 0 || settings.observe) return false;
   return takes_rows(u.desc) && fits_rows(u.desc, u.box) &&
          2 * positions.size() >= blocks_around(u, positions);
 }
@@ -358,20 +358,30 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
                   std::vector<std::byte>& out) {
   const std::size_t raw_size = u.present_bytes(positions), begin = out.size();
   bool done = false;
+  // The smallest form so far is what the chunk has; one that is tried must be smaller.
+  const auto tried = [&](const auto& encode) {
+    const std::size_t end = out.size();
+    if (!encode(done ? end - begin - 1 : raw_size)) return;
+    out.erase(out.begin() + static_cast<std::ptrdiff_t>(begin),
+              out.begin() + static_cast<std::ptrdiff_t>(end));
+    done = true;
+  };
+  const auto rows = [&](std::size_t most) {
+    return encode_rows(u, positions, texels, most, w.rows, w.models.values, out);
+  };
+  const bool by_rows = rows_pay(u, settings, positions);
   if (u.adaptive) {
     done = encode_adaptive(u, positions, texels, raw_size, w.models, out);
+    if (by_rows) tried(rows);
   } else if (settings.turbo && takes_tokens(u.desc)) {
     done = encode_tokens(u, positions, texels, settings.streams, raw_size, w.tokens, out);
   } else {
-    done = rows_pay(u, settings, positions) &&
-           encode_rows(u, positions, texels, raw_size, w.rows, w.models.values, out);
-    const std::size_t end = out.size(), most = done ? end - begin - 1 : raw_size;
+    if (by_rows) tried(rows);
     const bool tries = !done || (settings.planes && planes_may_pay(u, raw_size));
-    if (tries && may_be_modelled(u) &&
-        encode_modelled(u, positions, texels, settings, most, w, out)) {
-      out.erase(out.begin() + static_cast<std::ptrdiff_t>(begin),
-                out.begin() + static_cast<std::ptrdiff_t>(end));
-      done = true;
+    if (tries && may_be_modelled(u)) {
+      tried([&](std::size_t most) {
+        return encode_modelled(u, positions, texels, settings, most, w, out);
+      });
     }
   }
   if (!done) encode_raw(u, positions, texels, out);

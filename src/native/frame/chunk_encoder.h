@@ -9,6 +9,7 @@ namespace gicodec::native {
 struct EncodeSettings {
   bool strong = false;   ///< exact mode search and table choice
   bool turbo = false;    ///< token chunks
+  bool rows = true;      ///< row chunks are tried
   bool planes = true;    ///< planes are tried where rows may be larger
   unsigned streams = 4;  ///< of token chunks
   int set = -1;          ///< table set to use in all places, or the encoder's choice

@@ -61,6 +61,14 @@ bool adapts(const EncodeJob& job, const EncodeSettings& settings) {
                                        (records <= kTinyBlock ? kMaxTiny : kMaxSmall);
 }
 
+/// The largest that may be rows, up to that size.
+Grid box_of_rows(const TextureDesc& desc, const Grid& largest) {
+  std::uint32_t blocks = largest.x * largest.y * largest.z;
+  Grid box = largest;
+  while (!fits_rows(desc, box) && blocks > 1) box = default_box(desc.grid, blocks /= 2);
+  return box;
+}
+
 /// What was learned in a chunk is lost to the others: each should have enough of the update.
 Grid box_of_adaptive(const EncodeJob& job) {
   const std::uint64_t listed = std::max<std::size_t>(1, job.blocks.size());
@@ -69,7 +77,8 @@ Grid box_of_adaptive(const EncodeJob& job) {
   const Grid large = large_box(job.desc);
   if (takes_raster(job.desc)) {
     const std::uint64_t fitting = std::min<std::uint64_t>(most, blocks_of_raster(job.desc));
-    return default_box(job.desc.grid, static_cast<std::uint32_t>(fitting));
+    const Grid box = default_box(job.desc.grid, static_cast<std::uint32_t>(fitting));
+    return box_of_rows(job.desc, box);
   }
   if (most >= std::uint64_t{large.x} * large.y * large.z) return large;
   return default_box(job.desc.grid,
@@ -131,9 +140,8 @@ void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa i
   const Grid box = settings.box.x != 0     ? settings.box
                    : adaptive              ? box_of_adaptive(job)
                    : settings.chunk.strong ? box_of_strong(job.desc, layout)
-                   : rows && !fits_rows(job.desc, implicit_box)
-                       ? default_box(job.desc.grid, blocks_of_raster(job.desc))
-                       : implicit_box;
+                   : rows                  ? box_of_rows(job.desc, implicit_box)
+                                           : implicit_box;
   const bool wide = layout.low != 0;
   if (!adaptive && !settings.chunk.turbo && (!rows || wide))
     find_steps(job, kernels(isa), layout, memory.block_values);
