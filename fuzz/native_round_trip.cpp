@@ -30,9 +30,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::size_t block = block_bytes(desc), said = presence_bytes(desc);
   native::PayloadSettings settings;
   const auto flags = input.byte();
-  settings.chunk.strong = (flags & 1) != 0;
+  if ((flags & 1) != 0) settings.chunk.preset = native::Preset::strong;
   settings.threads = 1 + (flags >> 1 & 1);
-  settings.chunk.turbo = (flags & 8) != 0;
+  if ((flags & 8) != 0) settings.chunk.preset = native::Preset::turbo;
+  settings.chunk.others = (flags & 16) == 0;
   settings.chunk.streams = 4U << (flags >> 4) % 5;
   // A few boxes of any shape, or those of the encoder's choice.
   Grid box{1 + input.byte() % desc.grid.x, 1 + input.byte() % desc.grid.y,

@@ -66,7 +66,7 @@ TEST(Cost, OfRefusedNativePayloads) {
     expect_cheap_refusal(keyframe_of({.payload = payload}), status);
   };
   const auto boxed = [](int x, std::initializer_list<int> rest, int parts = 1) {
-    Bytes payload = bytes({2 | parts << 4, x, 0, 16, 0, 16, 0, 0, 0});
+    Bytes payload = bytes({3 | parts << 4, x, 0, 16, 0, 16, 0, 0, 0});
     const Bytes behind = bytes(rest);
     payload.insert(payload.end(), behind.begin(), behind.end());
     return payload;
@@ -77,9 +77,9 @@ TEST(Cost, OfRefusedNativePayloads) {
   refuse(boxed(16, {0, 1, 0, 0}, 3), Status::truncated);  // 256 ends, and none.
   refuse(boxed(16, {2, 0, 0, 0, 24, 0, 0, 0, 25, 0, 0, 0}, 3), Status::corrupt);  // A chunk of 0.
   refuse(boxed(16, {2, 0, 0, 0, 25, 0, 0, 0, 40, 0, 0, 0}, 3), Status::truncated);
-  refuse(bytes({3}), Status::unsupported_version);
+  refuse(bytes({4}), Status::unsupported_version);
   const auto chunks = [](const Bytes& good, const Bytes& last) {
-    Bytes payload = bytes({2 | 3 << 4, 16, 0, 16, 0, 16, 0, 0, 0});
+    Bytes payload = bytes({3 | 3 << 4, 16, 0, 16, 0, 16, 0, 0, 0});
     ByteWriter writer(payload);
     writer.fixed(std::uint32_t{64});
     std::size_t end = payload.size() + std::size_t{4} * 64;
@@ -153,7 +153,9 @@ TEST(Cost, OfRefusedIndicesAndBands) {
     return section;
   };
   expect_cheap_refusal(keyframe_of({.guard_bands = bands({0, 0})}), Status::corrupt);
-  expect_cheap_refusal(keyframe_of({.guard_bands = bands({0, 2, 1, 2, 3, 4})}), Status::corrupt);
+  expect_cheap_refusal(keyframe_of({.guard_bands = bands({0, 1, 1, 2, 3, 4})}), Status::truncated);
+  expect_cheap_refusal(keyframe_of({.guard_bands = bands({0, 2, 1, 2, 3, 4})}),
+                       Status::unsupported_feature);
 }
 
 TEST(Cost, WorkBeyondTheLimitIsRefused) {

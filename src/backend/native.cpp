@@ -13,8 +13,9 @@ class NativeEncoder final : public BackendEncoder {
  public:
   NativeEncoder(const TextureDesc& desc, const BackendSettings& settings)
       : desc_(desc), isa_(settings.isa) {
-    settings_.chunk.strong = settings.preset == "strong";
-    settings_.chunk.turbo = settings.preset == "turbo";
+    settings_.chunk.preset = settings.preset == "strong"  ? native::Preset::strong
+                             : settings.preset == "turbo" ? native::Preset::turbo
+                                                          : native::Preset::fast;
     settings_.threads = settings.threads;
     if (settings.chunk != 0) settings_.box = native::default_box(desc.grid, settings.chunk);
   }

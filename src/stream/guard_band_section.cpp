@@ -3,7 +3,6 @@
 #include "base/bytes.h"
 #include "base/parallel.h"
 #include "bitstream/index_buffer.h"
-#include "stream/band_differences.h"
 #include "texture/guard_band.h"
 
 #include <algorithm>
@@ -51,7 +50,7 @@ std::size_t guard_band_section_bound(const TextureDesc& desc, std::size_t blocks
 
 Status write_guard_band_section(const GuardBandContext& context, const StaleBands& stale,
                                 GuardBandMemory& memory, std::vector<std::byte>& out) {
-  auto& [places, bands, place_bytes, packed] = memory;
+  auto& [places, bands, place_bytes, packed, differences] = memory;
   places.clear(), bands.clear(), place_bytes.clear(), packed.clear();
   std::array<std::byte, kMaxBand> buffer;
   const auto predicted = std::span(buffer).first(band_bytes(context.desc));
@@ -66,7 +65,7 @@ Status write_guard_band_section(const GuardBandContext& context, const StaleBand
   const auto mode =
       encode_index_buffer(places, static_cast<std::uint32_t>(context.blocks.size()), place_bytes);
 
-  encode_differences(bands, context.desc.record.bytes, packed);
+  differences.encode(bands, context.desc.record.bytes, packed);
   const bool pays = packed.size() < bands.size();
 
   ByteWriter writer(out);
@@ -105,7 +104,7 @@ Result<SectionParts> parse_section(const TextureDesc& desc, std::uint32_t blocks
   if (status != Status::ok) return status;
   const std::size_t size = reader.rest().size(), bytes = count * band_bytes(desc);
   if (coding == BandCoding::plain && size != bytes) return Status::corrupt;
-  if (coding == BandCoding::coded && most_differences(size) < bytes) return Status::truncated;
+  if (coding == BandCoding::coded && BandDifferences::most(size) < bytes) return Status::truncated;
   return SectionParts{mode, count, places, reader.rest(), coding};
 }
 
@@ -132,7 +131,7 @@ Status read_guard_band_section(const TextureDesc& desc, std::span<const std::uin
     std::copy(parts->bands.begin(), parts->bands.end(), differences.bytes().begin());
     return Status::ok;
   }
-  return decode_differences(parts->bands, desc.record.bytes, differences.bytes());
+  return memory.differences.decode(parts->bands, desc.record.bytes, differences.bytes());
 }
 
 void resolve_guard_bands(const GuardBandContext& context, StaleBands& bands) noexcept {

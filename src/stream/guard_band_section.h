@@ -7,6 +7,7 @@
 #include <gicodec/texture.h>
 
 #include "base/memory.h"
+#include "stream/band_differences.h"
 #include "texture/stale_bands.h"
 
 #include <cstddef>
@@ -37,6 +38,7 @@ struct GuardBandMemory {
   Vector<std::uint32_t> places = {};
   Vector<std::byte> bands = {};
   std::vector<std::byte> place_bytes = {}, packed = {};
+  BandDifferences differences = {};
 };
 
 /// Appends the section for `stale`. Precondition: not empty, each block among context.blocks.

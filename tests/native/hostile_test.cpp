@@ -96,12 +96,12 @@ std::vector<test::UpdateCase> cases() {
 /// By the presets that make other chunks.
 std::vector<Bytes> payloads_of(const test::UpdateCase& u) {
   native::PayloadSettings turbo;
-  turbo.chunk.turbo = true;
+  turbo.chunk.preset = native::Preset::turbo;
   std::vector<Bytes> all{test::encode(u, {}, best_isa()), test::encode(u, turbo, best_isa())};
   native::PayloadSettings strong;
-  strong.chunk.strong = true;
+  strong.chunk.preset = native::Preset::strong;
   native::PayloadSettings rows;
-  rows.chunk.planes = false;
+  rows.chunk.others = false;
   if (native::takes_raster(u.desc)) {
     all.push_back(test::encode(u, strong, best_isa()));
     all.push_back(test::encode(u, rows, best_isa()));

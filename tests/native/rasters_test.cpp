@@ -21,8 +21,8 @@ using test::Bytes;
 
 native::PayloadSettings strong() {
   native::PayloadSettings settings;
-  settings.chunk.strong = true;
-  settings.chunk.rows = false;
+  settings.chunk.preset = native::Preset::strong;
+  settings.chunk.others = false;
   return settings;
 }
 
@@ -97,7 +97,7 @@ test::UpdateCase update_of(const TextureDesc& desc, bool keyframe, bool intra) {
 /// Not by planes, which are smaller where there is little.
 native::PayloadSettings rows() {
   native::PayloadSettings settings;
-  settings.chunk.planes = false;
+  settings.chunk.others = false;
   return settings;
 }
 

@@ -45,7 +45,7 @@ RC_GTEST_PROP(NativeRoundTrip, AnyVertices, (std::uint64_t seed)) {
   const Grid grid{test::pick(random, 1, 6), test::pick(random, 1, 4), test::pick(random, 1, 4)};
   const auto desc = test::vertices(grid, test::chance(random, 2));
   native::PayloadSettings settings;
-  settings.chunk.strong = !test::chance(random, 4);
+  if (!test::chance(random, 4)) settings.chunk.preset = native::Preset::strong;
   if (test::chance(random, 2)) {
     settings.box = {test::pick(random, 1, grid.x), test::pick(random, 1, grid.y),
                     test::pick(random, 1, grid.z)};
@@ -85,7 +85,7 @@ RC_GTEST_PROP(NativeRoundTrip, AnyVoxels, (std::uint64_t seed)) {
   const std::uint32_t most = side == 2 ? 100 : side == 4 ? 20 : 4;
   const auto desc = test::voxels(test::pick(random, 1, most), side, test::chance(random, 2));
   native::PayloadSettings settings;
-  settings.chunk.strong = !test::chance(random, 4);
+  if (!test::chance(random, 4)) settings.chunk.preset = native::Preset::strong;
   if (test::chance(random, 4)) settings.box = {test::pick(random, 1, desc.grid.x), 1, 1};
   const auto content = test::kVoxelContents[random() % std::size(test::kVoxelContents)];
   const auto mode = test::kUpdateModes[random() % std::size(test::kUpdateModes)];
@@ -122,7 +122,7 @@ TEST(NativeRoundTrip, VoxelsInSparsePackets) {
           u.received = received;
         }
         native::PayloadSettings settings;
-        settings.chunk.strong = true;
+        settings.chunk.preset = native::Preset::strong;
         if (packet % 3 == 2) settings.box = {4, 1, 1};
         check_everything(u, settings);
         for (const std::uint32_t b : u.blocks) {
@@ -158,7 +158,7 @@ TEST(NativeRoundTrip, VerticesInSparsePackets) {
           u.received = received;
         }
         native::PayloadSettings settings;
-        settings.chunk.strong = true;
+        settings.chunk.preset = native::Preset::strong;
         if (packet % 3 == 2) settings.box = {4, 3, 4};
         check_everything(u, settings);
         for (const std::uint32_t b : u.blocks) {

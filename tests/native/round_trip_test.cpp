@@ -51,7 +51,7 @@ RC_GTEST_PROP(NativeRoundTrip, AnyTexture, (std::uint64_t seed)) {
   const auto desc = small_desc(random);
   const auto content = test::kContents[random() % std::size(test::kContents)];
   native::PayloadSettings settings;
-  settings.chunk.strong = test::chance(random, 4);
+  if (test::chance(random, 4)) settings.chunk.preset = native::Preset::strong;
   if (test::chance(random, 2)) settings.box = any_box(random, desc.grid);
   if (test::chance(random, 3)) settings.chunk.lanes = 1U << test::pick(random, 0, 5);
   check_everything(any_update(desc, content, test::pick(random, 1, 4), seed), settings);
@@ -95,7 +95,7 @@ RC_GTEST_PROP(NativeRoundTrip, AnyTextureByTokens, (std::uint64_t seed)) {
   }
   const auto content = test::kContents[random() % std::size(test::kContents)];
   native::PayloadSettings settings;
-  settings.chunk.turbo = true;
+  settings.chunk.preset = native::Preset::turbo;
   settings.chunk.streams = 4U << test::pick(random, 0, 4);
   if (test::chance(random, 2)) settings.box = any_box(random, desc.grid);
   check_everything(any_update(desc, content, test::pick(random, 1, 4), seed), settings);
@@ -104,7 +104,7 @@ RC_GTEST_PROP(NativeRoundTrip, AnyTextureByTokens, (std::uint64_t seed)) {
 
 TEST(NativeRoundTrip, EveryFormatAndContentByTokens) {
   native::PayloadSettings settings;
-  settings.chunk.turbo = true;
+  settings.chunk.preset = native::Preset::turbo;
   check_formats(settings);
 }
 
@@ -124,7 +124,7 @@ RC_GTEST_PROP(NativeRoundTrip, AnyShape, (std::uint64_t seed)) {
                 static_cast<std::uint8_t>(test::pick(random, 1, 5))};
   const auto content = test::kContents[random() % std::size(test::kContents)];
   native::PayloadSettings settings;
-  settings.chunk.strong = test::chance(random, 4);
+  if (test::chance(random, 4)) settings.chunk.preset = native::Preset::strong;
   check_everything(any_update(desc, content, test::pick(random, 1, 4), seed), settings);
   RC_ASSERT(!testing::Test::HasFailure());
 }
@@ -138,7 +138,7 @@ RC_GTEST_PROP(NativeRoundTrip, AnyPresence, (std::uint64_t seed)) {
   desc.presence = test::chance(random, 2) ? Presence::count : Presence::mask;
   const auto content = test::kContents[random() % std::size(test::kContents)];
   native::PayloadSettings settings;
-  settings.chunk.strong = test::chance(random, 4);
+  if (test::chance(random, 4)) settings.chunk.preset = native::Preset::strong;
   check_everything(any_update(desc, content, test::pick(random, 1, 3), seed), settings);
   RC_ASSERT(!testing::Test::HasFailure());
 }
@@ -164,9 +164,19 @@ RC_GTEST_PROP(NativeRoundTrip, AnyShapeAdaptively, (std::uint64_t seed)) {
   if (desc.model == Model::stacked) desc.model = Model::continuous;
   const auto content = test::kContents[random() % std::size(test::kContents)];
   native::PayloadSettings settings;
-  settings.chunk.strong = true;
+  settings.chunk.preset = native::Preset::strong;
   check_everything(any_update(desc, content, test::pick(random, 1, 4), seed), settings);
   RC_ASSERT(!testing::Test::HasFailure());
+}
+
+RC_GTEST_PROP(NativeRoundTrip, StrongIsNeverLargerThanFast, (std::uint64_t seed)) {
+  test::Random random(seed);
+  const TextureDesc desc = test::any_desc(random, 3000);
+  const auto content = test::kContents[random() % std::size(test::kContents)];
+  const auto u = test::any_update(desc, content, test::pick(random, 1, 4), seed);
+  native::PayloadSettings strong;
+  strong.chunk.preset = native::Preset::strong;
+  RC_ASSERT(test::encode(u, strong, best_isa()).size() <= test::encode(u, {}, best_isa()).size());
 }
 
 TEST(NativeRoundTrip, EveryFormatInPart) {

@@ -22,7 +22,7 @@ constexpr std::uint64_t kFewBytes = 1024;
 /// the bytes of noisy pairs: only small updates that have to be fast do without.
 bool choose_flat(const Update& u, const EncodeSettings& settings, std::size_t probes) {
   if (!u.neighbours()) return true;
-  return u.update && !settings.strong && (!u.layout.pairs || probes <= kFewBlocks);
+  return u.update && settings.preset != Preset::strong && (!u.layout.pairs || probes <= kFewBlocks);
 }
 
 /// Groups whose steps are kept, so that little is modelled twice in a small chunk.
@@ -131,7 +131,7 @@ void find_frequent(const Update& u, Workspace& w, ChunkHead& head) {
 /// Whether rows that reach over blocks are worth their time: where most of their box is listed.
 bool rows_pay(const Update& u, const EncodeSettings& settings,
               std::span<const std::uint32_t> positions) {
-  if (!settings.rows || settings.set >= 0 || settings.lanes != 0 || settings.observe) return false;
+  if (settings.set >= 0 || settings.lanes != 0 || settings.observe) return false;
   return takes_rows(u.desc) && fits_rows(u.desc, u.box) &&
          2 * positions.size() >= blocks_around(u, positions);
 }
@@ -160,7 +160,7 @@ class ChunkEncoder {
       w_.chunk.form_groups(head_.lanes);
       start();
     }
-    exact_ = settings_.strong && (u_.update || !u_.layout.pairs);
+    exact_ = settings_.preset == Preset::strong && (u_.update || !u_.layout.pairs);
     if (exact_) {
       kept_ = 0;
       adapted = &adapt(std::clamp<std::size_t>(w_.chunk.groups() / 16, 1, 2), adapted);
@@ -178,10 +178,11 @@ class ChunkEncoder {
     kept_ = 0;
   }
   [[nodiscard]] unsigned lanes_for(std::uint64_t bytes, std::uint32_t widest) const {
-    if (settings_.lanes != 0 || (!settings_.strong && w_.chunk.coded <= kFewBlocks)) {
+    if (settings_.lanes != 0 ||
+        (settings_.preset != Preset::strong && w_.chunk.coded <= kFewBlocks)) {
       return head_.lanes;
     }
-    unsigned lanes = choose_lanes(w_.chunk.coded, settings_.strong ? 0 : bytes);
+    unsigned lanes = choose_lanes(w_.chunk.coded, settings_.preset == Preset::strong ? 0 : bytes);
     lanes = std::min(lanes, std::bit_ceil(widest));
     while (!enough_lanes(lanes, w_.chunk.coded)) lanes *= 2;
     return lanes;
@@ -241,7 +242,7 @@ class ChunkEncoder {
     const std::uint32_t scale = (w_.chunk.coded + seen / 2) / std::max(1U, seen);
     head_.tables.clear();
     bytes_ = w_.histogram.choose_sets(pairs, u_.update, head_.tables) * scale;
-    if (settings_.strong || bytes_ > kFewBytes) {
+    if (settings_.preset == Preset::strong || bytes_ > kFewBytes) {
       w_.histogram.choose_overrides(pairs, u_.update, scale, head_.tables);
     }
     if (head_.repeats) w_.histogram.fit_repeats(u_.update, scale, head_.tables.repeats);
@@ -281,7 +282,7 @@ bool encode_modelled(const Update& u, std::span<const std::uint32_t> positions,
   ChunkHead& head = w.head;
   // All of them until it is known what the chunk takes.
   const auto blocks = static_cast<unsigned>(positions.size());
-  const bool few = blocks <= kFewBlocks && !settings.strong;
+  const bool few = blocks <= kFewBlocks && settings.preset != Preset::strong;
   const auto worth =
       static_cast<unsigned>(std::clamp<std::size_t>(most / kMinLaneBytes, 1, blocks));
   const unsigned planned = few                 ? std::min(std::bit_ceil(worth), kLanes)
@@ -295,7 +296,7 @@ bool encode_modelled(const Update& u, std::span<const std::uint32_t> positions,
   // In a row of blocks each depends on the one before, and is alone in its group; in a small box
   // most are.
   const std::size_t groups = w.chunk.groups(), least = u.update ? kMinFilled : kMinFilledKey;
-  if (!head.flat && !head.repeats && !settings.strong && least * groups > blocks) {
+  if (!head.flat && !head.repeats && settings.preset != Preset::strong && least * groups > blocks) {
     head.flat = true;
     w.prepare(u, positions, head.lanes, head.flat);
   }
@@ -372,12 +373,12 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
   const bool by_rows = rows_pay(u, settings, positions);
   if (u.adaptive) {
     done = encode_adaptive(u, positions, texels, raw_size, w.models, out);
-    if (by_rows) tried(rows);
-  } else if (settings.turbo && takes_tokens(u.desc)) {
+    if (by_rows && settings.others) tried(rows);
+  } else if (settings.preset == Preset::turbo && takes_tokens(u.desc)) {
     done = encode_tokens(u, positions, texels, settings.streams, raw_size, w.tokens, out);
   } else {
     if (by_rows) tried(rows);
-    const bool tries = !done || (settings.planes && planes_may_pay(u, raw_size));
+    const bool tries = !done || (settings.others && planes_may_pay(u, raw_size));
     if (tries && may_be_modelled(u)) {
       tried([&](std::size_t most) {
         return encode_modelled(u, positions, texels, settings, most, w, out);

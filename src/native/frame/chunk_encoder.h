@@ -6,11 +6,16 @@
 
 namespace gicodec::native {
 
+/// How much time bytes are worth.
+enum class Preset : std::uint8_t {
+  turbo,   ///< token chunks
+  fast,    ///< static models, chosen by estimates
+  strong,  ///< exact search, and models that learn
+};
+
 struct EncodeSettings {
-  bool strong = false;   ///< exact mode search and table choice
-  bool turbo = false;    ///< token chunks
-  bool rows = true;      ///< row chunks are tried
-  bool planes = true;    ///< planes are tried where rows may be larger
+  Preset preset = Preset::fast;
+  bool others = true;    ///< other forms are tried where they may be smaller
   unsigned streams = 4;  ///< of token chunks
   int set = -1;          ///< table set to use in all places, or the encoder's choice
   unsigned lanes = 0;    ///< 0: the encoder's choice; more where enough_lanes() says so

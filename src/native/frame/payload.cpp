@@ -51,11 +51,12 @@ bool adapts(const EncodeJob& job, const EncodeSettings& settings) {
   constexpr std::size_t kMaxTiny = 1U << 26, kMaxSmall = 1U << 18;
   const Adapts when = model_of(job.desc).adapts;
   if (when == Adapts::always) return true;
-  if (when == Adapts::never || settings.turbo || settings.set >= 0 || settings.lanes != 0 ||
-      settings.observe) {
+  if (when == Adapts::never || settings.preset == Preset::turbo || settings.set >= 0 ||
+      settings.lanes != 0 || settings.observe) {
     return false;
   }
-  if (settings.strong || when == Adapts::if_strong) return settings.strong;
+  if (settings.preset == Preset::strong || when == Adapts::if_strong)
+    return settings.preset == Preset::strong;
   const std::uint32_t records = record_count(job.desc.block);
   return records <= kSmallBlock && job.blocks.size() * block_bytes(job.desc) <=
                                        (records <= kTinyBlock ? kMaxTiny : kMaxSmall);
@@ -130,20 +131,22 @@ std::size_t payload_bound(const TextureDesc& desc, std::size_t probes) noexcept 
   return kMaxHead + probes * (kMaxChunkEntry + block_bytes(desc));
 }
 
-void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa isa,
-                    PayloadMemory& memory, std::vector<std::byte>& out) {
+namespace {
+
+void encode(const EncodeJob& job, const PayloadSettings& settings, Isa isa, PayloadMemory& memory,
+            std::vector<std::byte>& out) {
   PlaneLayout layout = plane_layout(job.desc);
   const Grid implicit_box = box_of_texture(job.desc, layout);
   const bool adaptive = adapts(job, settings.chunk);
-  const bool rows = !adaptive && !settings.chunk.turbo && takes_rows(job.desc) &&
+  const bool rows = !adaptive && settings.chunk.preset != Preset::turbo && takes_rows(job.desc) &&
                     (job.keyframe || 2 * job.blocks.size() >= block_count(job.desc));
-  const Grid box = settings.box.x != 0     ? settings.box
-                   : adaptive              ? box_of_adaptive(job)
-                   : settings.chunk.strong ? box_of_strong(job.desc, layout)
-                   : rows                  ? box_of_rows(job.desc, implicit_box)
-                                           : implicit_box;
+  const Grid box = settings.box.x != 0                       ? settings.box
+                   : adaptive                                ? box_of_adaptive(job)
+                   : settings.chunk.preset == Preset::strong ? box_of_strong(job.desc, layout)
+                   : rows                                    ? box_of_rows(job.desc, implicit_box)
+                                                             : implicit_box;
   const bool wide = layout.low != 0;
-  if (!adaptive && !settings.chunk.turbo && (!rows || wide))
+  if (!adaptive && settings.chunk.preset != Preset::turbo && (!rows || wide))
     find_steps(job, kernels(isa), layout, memory.block_values);
   Update update{.desc = job.desc,
                 .layout = layout,
@@ -197,6 +200,23 @@ void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa i
     writer.bytes(chunk);
     at += chunk.size();
   }
+}
+
+}  // namespace
+
+void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa isa,
+                    PayloadMemory& memory, std::vector<std::byte>& out) {
+  const std::size_t begin = out.size();
+  encode(job, settings, isa, memory, out);
+  // Strong is never larger than fast.
+  if (settings.chunk.preset != Preset::strong || !settings.chunk.others) return;
+  const std::size_t end = out.size();
+  PayloadSettings fast = settings;
+  fast.chunk.preset = Preset::fast;
+  encode(job, fast, isa, memory, out);
+  const auto at = [&](std::size_t i) { return out.begin() + static_cast<std::ptrdiff_t>(i); };
+  const bool smaller = out.size() - end < end - begin;
+  out.erase(smaller ? at(begin) : at(end), smaller ? at(end) : out.end());
 }
 
 namespace {

@@ -86,7 +86,7 @@ void RowTables::count(std::span<const Step> steps) {
 void RowTables::fit_role(unsigned role, unsigned contexts) {
   const Bins* const bins = bins_.data() + std::size_t{role} * kContexts;
   std::span<std::uint8_t> map(map_[role]);
-  std::ranges::fill(map, std::uint8_t{0});
+  std::fill(std::begin(map), std::end(map), std::uint8_t{0});
   Role& fitted = role_[role];
   std::array<std::uint64_t, kContexts> seen{};
   Vector<std::pair<std::uint64_t, std::uint8_t>> order;
@@ -137,7 +137,7 @@ void RowTables::fit_role(unsigned role, unsigned contexts) {
 }
 
 void RowTables::fit_repeats() {
-  std::ranges::fill(repeat_map_, std::uint8_t{0});
+  std::fill(std::begin(repeat_map_), std::end(repeat_map_), std::uint8_t{0});
   Vector<std::pair<std::uint64_t, std::uint8_t>> order;
   std::uint64_t all = 0;
   const auto seen = [&](std::uint8_t c) {
@@ -222,7 +222,7 @@ void RowTables::read(const RowClasses& classes, ByteReader& reader) {
       return reader.fail(Status::corrupt);
     }
   }
-  std::ranges::fill(repeat_map_, std::uint8_t{0});
+  std::fill(std::begin(repeat_map_), std::end(repeat_map_), std::uint8_t{0});
   read_map(reader, bits_of_map(repeats_), repeats_,
            std::span(repeat_map_).first(kRowRepeatContexts));
   for (unsigned r = 0; r < kRowRoles && reader.ok(); ++r) {
@@ -233,7 +233,7 @@ void RowTables::read(const RowClasses& classes, ByteReader& reader) {
     for (unsigned m = 0; m < role.count && reader.ok(); ++m) {
       read_distribution(reader, role.distribution[m]);
     }
-    std::ranges::fill(map_[r], std::uint8_t{0});
+    std::fill(std::begin(map_[r]), std::end(map_[r]), std::uint8_t{0});
     read_map(reader, bits_of_map(role.count), role.count,
              std::span(map_[r]).first(classes[r] * std::size_t{kRowClass}));
   }
@@ -248,7 +248,7 @@ void RowTables::build(const RowClasses& classes) {
     for (unsigned m = 0; m < role_[r].count; ++m) {
       build_distribution(role_[r].distribution[m], m, built_[r]);
     }
-    std::ranges::copy(map_[r], std::begin(built_[r].map));
+    std::copy(std::begin(map_[r]), std::end(map_[r]), std::begin(built_[r].map));
   }
   for (unsigned m = 0; m < repeats_; ++m) {
     for (unsigned k = 0; k < 2; ++k) {
@@ -256,7 +256,7 @@ void RowTables::build(const RowClasses& classes) {
       built_repeats_.high[k][m] = static_cast<std::uint8_t>(end_[m][k] >> 8);
     }
   }
-  std::ranges::copy(repeat_map_, std::begin(built_repeats_.map));
+  std::copy(std::begin(repeat_map_), std::end(repeat_map_), std::begin(built_repeats_.map));
   tables_.rows = &built_repeats_;
 }
 
