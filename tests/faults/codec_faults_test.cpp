@@ -133,15 +133,14 @@ TEST_P(CodecFaults, ChangeNothing) {
   EXPECT_GT(faults, 40U);
 }
 
-INSTANTIATE_TEST_SUITE_P(Codings, CodecFaults,
-                         testing::Values(Coding{"raw", 0, true}, Coding{"lz4", 1, true},
-                                         Coding{"lz4", 12, true}, Coding{"zstd", 1, true},
-                                         Coding{"native", 0, true, "fast"},
-                                         Coding{"native", 0, true, "strong"}),
-                         [](const auto& test) {
-                           return std::string(test.param.backend) +
-                                  std::to_string(test.param.level) + test.param.preset;
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Codings, CodecFaults,
+    testing::Values(Coding{"raw", 0, true}, Coding{"lz4", 1, true}, Coding{"lz4", 12, true},
+                    Coding{"zstd", 1, true}, Coding{"native", 0, true, "turbo"},
+                    Coding{"native", 0, true, "fast"}, Coding{"native", 0, true, "strong"}),
+    [](const auto& test) {
+      return std::string(test.param.backend) + std::to_string(test.param.level) + test.param.preset;
+    });
 
 /// Chunks on threads of their own, some of which cannot be started.
 TEST(CodecThreadFaults, ChangeNothing) {

@@ -6,6 +6,7 @@
 #include "native/frame/chunk_head.h"
 #include "native/frame/statistics.h"
 #include "native/planes/steps.h"
+#include "native/tokens/token_head.h"
 
 #include <algorithm>
 #include <atomic>
@@ -286,8 +287,9 @@ Status check_payload(const TextureDesc& desc, std::size_t probes,
   if (chunks > std::min(probes, boxes)) return Status::corrupt;
   if (chunks < (probes + volume - 1) / volume) return Status::truncated;
   for (const auto bytes : head.chunks) {
-    const bool modelled = (std::to_integer<unsigned>(bytes[0]) & 3) == kModelledChunk;
-    if (modelled && volume > kMaxChunkProbes) return Status::corrupt;
+    const unsigned kind = std::to_integer<unsigned>(bytes[0]) & 3;
+    const bool small = kind == kModelledChunk || kind == kTokenChunk;
+    if (small && volume > kMaxChunkProbes) return Status::corrupt;
     // Heads of updates have all that those of keyframes have.
     const Status status = check_chunk(desc, head.layout, true, bytes, memory.chunk_head);
     if (status != Status::ok) return status;
