@@ -1,6 +1,7 @@
 // Every "must" of docs/native.md about heads: payloads that break one alone are refused by both
 // decoders, and without decoding where heads suffice.
 #include "native/crafted.h"
+#include "native/matches/match_chunk.h"
 #include "native/tokens/token_head.h"
 
 #include <gtest/gtest.h>
@@ -167,10 +168,11 @@ TEST(NativeHead, FirstBytes) {
     if ((first & 3) == kModelledChunk) continue;
     SCOPED_TRACE(first);
     const Bytes other = with(t.payload, TwoChunks::kFirst, first);
-    // Of an adaptive chunk no more can be checked; tokens take more bytes than are there.
+    // Of adaptive and match chunks no more can be checked; tokens take more bytes than are there.
     const bool tokens = (first & 3) == kTokenChunk && first >> 3 <= 4;
-    first == kAdaptiveChunk
-        ? expect_refused(t.u, other)
+    first == kAdaptiveChunk ? expect_refused(t.u, other)
+    : first == kMatchChunk
+        ? expect_refused(t.u, other, Status::truncated)
         : expect_refused_at_once(t.u, other, tokens ? Status::truncated : Status::corrupt);
   }
   for (const bool pairs : {false, true}) {

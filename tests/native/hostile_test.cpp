@@ -2,6 +2,7 @@
 // set, and the same verdict everywhere.
 #include "native/content.h"
 #include "native/frame/chunk_head.h"
+#include "native/matches/match_chunk.h"
 #include "native/reference_decoder.h"
 #include "native/vector_content.h"
 #include "native/voxel_content.h"
@@ -100,8 +101,10 @@ std::vector<Bytes> payloads_of(const test::UpdateCase& u) {
   std::vector<Bytes> all{test::encode(u, {}, best_isa()), test::encode(u, turbo, best_isa())};
   native::PayloadSettings strong;
   strong.chunk.preset = native::Preset::strong;
-  native::PayloadSettings rows;
+  native::PayloadSettings rows, matches;
   rows.chunk.others = false;
+  matches.chunk.matches_within = 1 << 20;
+  all.push_back(test::encode(u, matches, best_isa()));
   if (native::takes_raster(u.desc)) {
     all.push_back(test::encode(u, strong, best_isa()));
     all.push_back(test::encode(u, rows, best_isa()));
@@ -112,7 +115,8 @@ std::vector<Bytes> payloads_of(const test::UpdateCase& u) {
 bool ends_adaptive(const test::UpdateCase& u, std::span<const std::byte> payload) {
   native::PayloadMemory memory;
   EXPECT_EQ(native::check_payload(u.desc, u.blocks.size(), payload, memory), Status::ok);
-  return memory.head.chunks.back().front() == std::byte{native::kAdaptiveChunk};
+  const auto first = memory.head.chunks.back().front();
+  return first == std::byte{native::kAdaptiveChunk} || first == std::byte{native::kMatchChunk};
 }
 
 /// But for what the binary coder reads: it takes any bytes, the same records from no others.

@@ -44,4 +44,9 @@ using HeldBlocks = std::map<std::array<std::uint32_t, 3>, std::vector<std::byte>
     const std::vector<AdaptiveBlock>& blocks, const HeldBlocks& held,
     std::span<const std::byte> bytes);
 
+/// The same of a match chunk (docs/native/matches.md), without its first byte.
+[[nodiscard]] std::optional<std::vector<std::vector<std::byte>>> decode_matches(
+    const TextureDesc& desc, const std::vector<AdaptiveBlock>& blocks,
+    std::span<const std::byte> stream);
+
 }  // namespace gicodec::reference

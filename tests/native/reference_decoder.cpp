@@ -98,14 +98,14 @@ class Decoder {
   }
   void choose_box() {
     const auto volume = [&] { return std::uint64_t{box_[0]} * box_[1] * box_[2]; };
-    std::ranges::copy(std::array{desc_.grid.x, desc_.grid.y, desc_.grid.z}, box_);
+    std::ranges::copy(std::array{desc_.grid.x, desc_.grid.y, desc_.grid.z}, box_.begin());
     const std::uint64_t most = std::clamp<std::uint64_t>(volume() / 2, 1024, 2048);
     const std::uint64_t values = records_ * planes_.size();
     choose_box(std::min(most, std::max<std::uint64_t>((1U << 20) / values, 64)));
   }
   void choose_box(std::uint64_t n) {
     const auto volume = [&] { return std::uint64_t{box_[0]} * box_[1] * box_[2]; };
-    std::ranges::copy(std::array{desc_.grid.x, desc_.grid.y, desc_.grid.z}, box_);
+    std::ranges::copy(std::array{desc_.grid.x, desc_.grid.y, desc_.grid.z}, box_.begin());
     while (volume() > n) {
       unsigned longest = 2;
       for (const unsigned axis : {0U, 1U}) {
@@ -185,7 +185,7 @@ class Decoder {
       }
       return in.at_end();
     }
-    if (first == 2 || first == 6) return adaptive_chunk(blocks, first, in.take(in.left()));
+    if ((first & 3) == 2 && first < 12) return adaptive_chunk(blocks, first, in.take(in.left()));
     if ((first & 3) == 3) return token_chunk(blocks, first, in);
     if ((first & 3) != 1 || (first >> 2 & 7) > 5) return false;
     if (std::uint64_t{box_[0]} * box_[1] * box_[2] > 4096) return false;
@@ -252,10 +252,10 @@ class Decoder {
       }
       all.push_back(std::move(one));
     }
-    const std::array box{box_[0], box_[1], box_[2]};
     const auto held = held_around(blocks);
-    auto records = first == 6 ? decode_rows(desc_, box, all, held, stream)
-                              : decode_adaptive(desc_, box, all, held, held_bricks(), stream);
+    auto records = first == 6    ? decode_rows(desc_, box_, all, held, stream)
+                   : first == 10 ? decode_matches(desc_, all, stream)
+                                 : decode_adaptive(desc_, box_, all, held, held_bricks(), stream);
     if (!records) return false;
     for (std::size_t i = 0; i < blocks.size(); ++i) raw_[blocks[i]] = std::move((*records)[i]);
     return true;
@@ -380,7 +380,7 @@ class Decoder {
   bool intra_;
   std::span<const std::byte> held_presence_;
   std::size_t records_, block_bytes_;
-  std::uint32_t box_[3] = {};
+  std::array<std::uint32_t, 3> box_{};
   std::map<std::uint32_t, Values> done_;
   std::map<std::uint32_t, std::vector<std::byte>> raw_;
 };

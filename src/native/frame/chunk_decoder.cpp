@@ -2,6 +2,7 @@
 
 #include "native/frame/chunk_head.h"
 #include "native/frame/statistics.h"
+#include "native/matches/match_chunk.h"
 #include "native/planes/mode_search.h"
 #include "native/planes/tables.h"
 #include "native/tokens/token_head.h"
@@ -97,6 +98,7 @@ Status check_chunk(const TextureDesc& desc, const PlaneLayout& layout, bool upda
     return size != 0 && size % block_bytes(desc) == 0 ? Status::ok : Status::corrupt;
   }
   if (first == kAdaptiveChunk) return Status::ok;
+  if (first == kMatchChunk) return takes_matches(desc) ? Status::ok : Status::corrupt;
   if (first == kRowChunk) return check_rows(desc, reader.rest());
   if ((first & 3) == kTokenChunk) return check_tokens(desc, first, reader.rest());
   Input in{};
@@ -132,6 +134,13 @@ Status decode_chunk(const Update& u, std::span<const std::uint32_t> positions,
       statistics->word_bytes += bytes.size() - 1;
     }
     return decode_rows(u, positions, reader.rest(), texels, w.rows, w.models.values);
+  }
+  if (first == kMatchChunk) {
+    if (statistics != nullptr) {
+      ++statistics->head_bytes;
+      statistics->word_bytes += bytes.size() - 1;
+    }
+    return decode_matches(u, positions, reader.rest(), texels);
   }
   if (std::size_t{u.box.x} * u.box.y * u.box.z > kMaxChunkProbes) return Status::corrupt;
   if ((first & 3) == kTokenChunk) {

@@ -1,6 +1,7 @@
 #include "native/frame/chunk_encoder.h"
 
 #include "native/frame/chunk_head.h"
+#include "native/matches/match_chunk.h"
 #include "native/planes/mode_search.h"
 
 #include <algorithm>
@@ -371,7 +372,9 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
     return encode_rows(u, positions, texels, most, w.rows, w.models.values, out);
   };
   const bool by_rows = rows_pay(u, settings, positions);
-  if (u.adaptive) {
+  if (settings.matches_within != 0) {
+    done = encode_matches(u, positions, texels, std::min(raw_size, settings.matches_within), out);
+  } else if (u.adaptive) {
     done = encode_adaptive(u, positions, texels, raw_size, w.models, out);
     if (by_rows && settings.others) tried(rows);
   } else if (settings.preset == Preset::turbo && takes_tokens(u.desc)) {

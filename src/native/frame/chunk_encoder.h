@@ -16,6 +16,8 @@ enum class Preset : std::uint8_t {
 struct EncodeSettings {
   Preset preset = Preset::fast;
   bool others = true;    ///< other forms are tried where they may be smaller
+  /// If not 0: match chunks of at most so many bytes, or raw ones.
+  std::size_t matches_within = 0;
   unsigned streams = 4;  ///< of token chunks
   int set = -1;          ///< table set to use in all places, or the encoder's choice
   unsigned lanes = 0;    ///< 0: the encoder's choice; more where enough_lanes() says so

@@ -5,6 +5,7 @@
 #include "native/frame/chunk_decoder.h"
 #include "native/frame/chunk_head.h"
 #include "native/frame/statistics.h"
+#include "native/matches/match_chunk.h"
 #include "native/planes/steps.h"
 #include "native/tokens/token_head.h"
 
@@ -147,7 +148,8 @@ void encode(const EncodeJob& job, const PayloadSettings& settings, Isa isa, Payl
                    : rows                                    ? box_of_rows(job.desc, implicit_box)
                                                              : implicit_box;
   const bool wide = layout.low != 0;
-  if (!adaptive && settings.chunk.preset != Preset::turbo && (!rows || wide))
+  const bool modelled = !adaptive && settings.chunk.preset != Preset::turbo && (!rows || wide);
+  if (modelled && settings.chunk.matches_within == 0)
     find_steps(job, kernels(isa), layout, memory.block_values);
   Update update{.desc = job.desc,
                 .layout = layout,
@@ -209,15 +211,22 @@ void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa i
                     PayloadMemory& memory, std::vector<std::byte>& out) {
   const std::size_t begin = out.size();
   encode(job, settings, isa, memory, out);
-  // Strong is never larger than fast.
   if (settings.chunk.preset != Preset::strong || !settings.chunk.others) return;
-  const std::size_t end = out.size();
-  PayloadSettings fast = settings;
-  fast.chunk.preset = Preset::fast;
-  encode(job, fast, isa, memory, out);
   const auto at = [&](std::size_t i) { return out.begin() + static_cast<std::ptrdiff_t>(i); };
-  const bool smaller = out.size() - end < end - begin;
-  out.erase(smaller ? at(begin) : at(end), smaller ? at(end) : out.end());
+  // Appends another payload and keeps the smaller.
+  const auto try_as = [&](const PayloadSettings& other) {
+    const std::size_t end = out.size();
+    encode(job, other, isa, memory, out);
+    const bool smaller = out.size() - end < end - begin;
+    out.erase(smaller ? at(begin) : at(end), smaller ? at(end) : out.end());
+  };
+  PayloadSettings other = settings;
+  other.chunk.preset = Preset::fast;
+  try_as(other);
+  if (!takes_matches(job.desc)) return;
+  other.chunk.matches_within = out.size() - begin;
+  other.box = large_box(job.desc);
+  try_as(other);
 }
 
 namespace {

@@ -1,0 +1,48 @@
+#include "native/matches/byte_order.h"
+#include "native/matches/match_chunk.h"
+#include "native/matches/match_model.h"
+
+namespace gicodec::native {
+
+bool takes_matches(const TextureDesc& desc) noexcept { return desc.presence == Presence::all; }
+
+Status decode_matches(const Update& u, std::span<const std::uint32_t> positions,
+                      std::span<const std::byte> bytes, std::span<std::byte> texels) {
+  if (!takes_matches(u.desc)) return Status::corrupt;
+  BinaryDecoder coder(bytes);
+  const ByteOrder order{static_cast<Difference>(coder.bypass(2)), coder.bypass(1) != 0};
+  const auto literals = static_cast<Literals>(coder.bypass(2));
+  if (order.difference == Difference::past && !u.update) return Status::corrupt;
+  MatchModel model(literals, distances_of(u.desc, order, positions.size()));
+  const std::size_t block = u.block_bytes();
+  ByteWalk to(u, positions, {texels.data(), block}, order), from = to;
+  std::uint8_t last = 0;
+  const auto store = [&](std::uint8_t difference) {
+    last = difference;
+    texels[to.position() * block + to.at()] = to.byte_of(difference);
+    to.step();
+  };
+  const std::size_t size = to.size();
+  for (std::size_t done = 0; done < size;) {
+    if (coder.overrun()) return Status::truncated;
+    if (u.cancelled()) return Status::cancelled;
+    const Match match = model.match(coder, to.byte(), {});
+    if (match.length == 0) {
+      store(model.literal(coder, to.byte(), last, 0));
+      ++done;
+      continue;
+    }
+    if (match.distance == 0 || match.distance > done || match.length > size - done)
+      return coder.overrun() ? Status::truncated : Status::corrupt;
+    from.seek(done - match.distance);
+    for (std::uint32_t i = 0; i < match.length; ++i) {
+      store(from.difference());
+      from.step();
+    }
+    done += match.length;
+  }
+  if (coder.overrun()) return Status::truncated;
+  return coder.ended() ? Status::ok : Status::corrupt;
+}
+
+}  // namespace gicodec::native

@@ -1,0 +1,190 @@
+// How literals, lengths and distances are coded, in both directions (docs/native/matches.md).
+#pragma once
+
+#include "base/binary_coder.h"
+#include "native/matches/byte_order.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+namespace gicodec::native {
+
+/// A bit whose probability follows its past.
+struct MatchBit {
+  static constexpr std::uint32_t kMin = 1U << (kBitScale - 11), kMostAsked = 126;
+  std::uint16_t one = 1U << (kBitScale - 1);
+  std::uint8_t asked = 0;
+
+  template <typename Coder>
+  bool code(Coder& coder, bool value) {
+    constexpr std::uint32_t kAll = 1U << kBitScale;
+    const bool bit = coder.bit(std::clamp<std::uint32_t>(one, kMin, kAll - kMin), value);
+    const std::uint32_t off = bit ? kAll - 1 - one : one;
+    const std::uint32_t step = 2 * off / (2 * asked + 3U);
+    one = static_cast<std::uint16_t>(bit ? one + step : one - step);
+    if (asked < kMostAsked) ++asked;
+    return bit;
+  }
+};
+
+/// Symbols of `kBits` bits, the highest first, each by those before it.
+template <unsigned kBits>
+struct BitTree {
+  std::array<MatchBit, 1U << kBits> node;
+
+  template <typename Coder>
+  std::uint32_t code(Coder& coder, std::uint32_t value, unsigned bits = kBits) {
+    std::uint32_t at = 1;
+    for (unsigned left = bits; left-- > 0;) {
+      at = at << 1 | (node[at].code(coder, (value >> left & 1) != 0) ? 1U : 0U);
+    }
+    return at - (1U << bits);
+  }
+};
+
+/// Numbers below 2^31: how many bits they have, then the four highest and the four lowest of those
+/// below the first by trees.
+struct MatchNumber {
+  static constexpr unsigned kModelled = 4, kWidthBits = 5;
+  BitTree<kWidthBits> width;
+  std::array<BitTree<kModelled>, 1U << kWidthBits> high;
+  BitTree<kModelled> low;
+
+  template <typename Coder>
+  std::uint32_t code(Coder& coder, std::uint32_t value) {
+    const std::uint32_t bits = width.code(coder, static_cast<std::uint32_t>(std::bit_width(value)));
+    if (bits <= 1) return bits;
+    unsigned left = bits - 1;
+    const auto part = [&](unsigned count) {
+      left -= count;
+      return value >> left & ((1U << count) - 1);
+    };
+    std::uint32_t number = 1;
+    const unsigned first = std::min(left, kModelled);
+    number = number << first | high[bits].code(coder, part(first), first);
+    const unsigned last = left >= kModelled ? kModelled : 0;
+    const unsigned middle = left - last;
+    number = number << middle | coder.bypass(middle, part(middle));
+    if (last != 0) number = number << last | low.code(coder, part(last));
+    return number;
+  }
+};
+
+/// How literals are coded.
+enum class Literals : std::uint8_t {
+  plain,     ///< eight bits
+  together,  ///< by one tree
+  apart,     ///< by one tree for each byte of a record
+  after,     ///< by one tree for each value of the byte before
+};
+inline constexpr unsigned kLiterals = 4;
+
+struct Match {
+  std::uint32_t length = 0;  ///< 0: a literal
+  std::uint64_t distance = 0;
+};
+
+inline constexpr std::uint32_t kMinMatch = 3;  ///< of new distances
+inline constexpr unsigned kLastDistances = 4;
+inline constexpr std::size_t kByteContexts = 32;  ///< of bytes of records
+
+/// The distances that were used last, the last first.
+class LastDistances {
+ public:
+  explicit LastDistances(const Distances& first)
+      : distance_{first.unit, first.row, first.block, first.far} {}
+  [[nodiscard]] std::uint64_t operator[](unsigned i) const { return distance_[i]; }
+  /// kLastDistances if there is none such.
+  [[nodiscard]] unsigned find(std::uint64_t distance) const {
+    const auto found = std::find(distance_.begin(), distance_.end(), distance);
+    return static_cast<unsigned>(found - distance_.begin());
+  }
+  /// To the front; but the last one stays what it is, and the one before leaves if it is new.
+  void use(std::uint64_t distance) {
+    const unsigned found = find(distance);
+    if (found == kLastDistances - 1) return;
+    const unsigned at = std::min(found, kLastDistances - 2);
+    for (unsigned i = at; i > 0; --i) distance_[i] = distance_[i - 1];
+    distance_[0] = distance;
+  }
+
+ private:
+  std::array<std::uint64_t, kLastDistances> distance_;
+};
+
+/// Codes literals and matches, one after the other.
+class MatchModel {
+ public:
+  MatchModel(Literals literals, const Distances& distances)
+      : literals_(literals),
+        unit_(distances.unit > kLargestUnit ? 1 : static_cast<std::uint32_t>(distances.unit)),
+        last_(distances) {
+    trees_.resize(literals == Literals::after ? 256 : kByteContexts);
+  }
+
+  /// `byte`: index in its record. A length that is 0 says that a literal follows.
+  template <typename Coder>
+  Match match(Coder& coder, std::size_t byte, Match match) {
+    const std::size_t context = std::min<std::size_t>(byte, kByteContexts - 1);
+    const bool is_match = is_match_[after_][context].code(coder, match.length != 0);
+    if (!is_match) {
+      after_ = 0;
+      return {};
+    }
+    const unsigned known = last_.find(match.distance);
+    const bool repeats = repeats_[after_].code(coder, known < kLastDistances);
+    if (repeats) {
+      match.distance = last_[which_.code(coder, known)];
+      match.length = 1 + length_[1].code(coder, match.length - 1);
+    } else {
+      match.length = kMinMatch + length_[0].code(coder, match.length - kMinMatch);
+      const std::uint32_t of = std::min(match.length - kMinMatch, kLengths - 1);
+      const auto units = static_cast<std::uint32_t>(match.distance / unit_);
+      auto rest = static_cast<std::uint32_t>(match.distance % unit_);
+      if (unit_ > 1) rest = rest_.code(coder, rest);
+      match.distance = std::uint64_t{distance_[of].code(coder, units)} * unit_ + rest;
+    }
+    last_.use(match.distance);
+    after_ = repeats ? 2 : 1;
+    return match;
+  }
+  /// `before`: the byte before, or 0.
+  template <typename Coder>
+  std::uint8_t literal(Coder& coder, std::size_t byte, std::uint8_t before, std::uint8_t value) {
+    std::size_t context = 0;
+    switch (literals_) {
+      case Literals::plain:
+        return static_cast<std::uint8_t>(coder.bypass(8, value));
+      case Literals::together:
+        break;
+      case Literals::apart:
+        context = std::min<std::size_t>(byte, kByteContexts - 1);
+        break;
+      case Literals::after:
+        context = before;
+        break;
+    }
+    return static_cast<std::uint8_t>(trees_[context].code(coder, value));
+  }
+
+ private:
+  static constexpr std::uint32_t kLengths = 4;  // that distances are told apart by
+  static constexpr unsigned kUnitBits = 5, kLargestUnit = 1U << kUnitBits;
+
+  Literals literals_;
+  std::uint32_t unit_;  // distances are multiples of it, most of all
+  unsigned after_ = 0;  // a literal, a match of a new distance, of a last one
+  LastDistances last_;
+  std::vector<BitTree<8>> trees_;
+  std::array<std::array<MatchBit, kByteContexts>, 3> is_match_;
+  std::array<MatchBit, 3> repeats_;
+  BitTree<2> which_;
+  std::array<MatchNumber, 2> length_;
+  std::array<MatchNumber, kLengths> distance_;
+  BitTree<kUnitBits> rest_;
+};
+
+}  // namespace gicodec::native
