@@ -31,7 +31,7 @@ namespace gicodec {
 /// - Bricks: lists by place, of the mirror's and of a chunk's.
 [[nodiscard]] inline std::uint64_t scratch_memory(const TextureDesc& desc,
                                                   unsigned threads) noexcept {
-  constexpr std::uint64_t kFixed = 256 << 10, kFixedOfThread = (2 << 20) + native::kModelMemory,
+  constexpr std::uint64_t kFixed = 256 << 10, kFixedOfThread = (9 << 18) + native::kModelMemory,
                           kBlock = 40;
   constexpr std::uint64_t kChunkBlocks = 4096;
   const std::uint64_t blocks = block_count(desc), block = block_bytes(desc);

@@ -140,7 +140,7 @@ Status decode_chunk(const Update& u, std::span<const std::uint32_t> positions,
       ++statistics->head_bytes;
       statistics->word_bytes += bytes.size() - 1;
     }
-    return decode_matches(u, positions, reader.rest(), texels);
+    return decode_matches(u, positions, reader.rest(), texels, w.matches);
   }
   if (std::size_t{u.box.x} * u.box.y * u.box.z > kMaxChunkProbes) return Status::corrupt;
   if ((first & 3) == kTokenChunk) {

@@ -15,7 +15,7 @@ enum class Preset : std::uint8_t {
 
 struct EncodeSettings {
   Preset preset = Preset::fast;
-  bool others = true;    ///< other forms are tried where they may be smaller
+  bool others = true;  ///< other forms are tried where they may be smaller
   /// If not 0: match chunks of at most so many bytes, or raw ones.
   std::size_t matches_within = 0;
   unsigned streams = 4;  ///< of token chunks

@@ -5,6 +5,7 @@
 
 #include "base/memory.h"
 #include "native/frame/chunk.h"
+#include "native/matches/match_memory.h"
 #include "native/models/models.h"
 #include "native/planes/adaptation.h"
 #include "native/planes/kernels.h"
@@ -144,6 +145,7 @@ class Workspace {
   ModelMemory models;
   TokenMemory tokens;
   RowMemory rows;
+  MatchMemory matches;
   ChunkHead head;  ///< of the chunk
 
  private:

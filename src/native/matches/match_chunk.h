@@ -1,9 +1,9 @@
 // Match chunks: bytes that came before in the chunk, however far (docs/native/matches.md).
 #pragma once
 
-#include "base/memory.h"
-#include "native/frame/workspace.h"
+#include "native/matches/match_memory.h"
 
+#include <gicodec/backend.h>
 #include <gicodec/status.h>
 
 #include <cstddef>
@@ -13,6 +13,8 @@
 
 namespace gicodec::native {
 
+struct Update;
+
 inline constexpr std::uint8_t kMatchChunk = 10;
 
 /// Whether every record exists.
@@ -21,8 +23,10 @@ inline constexpr std::uint8_t kMatchChunk = 10;
 /// Appends a match chunk unless it would have more than `most` bytes; false then. Takes the order
 /// of bytes that a quick look finds best.
 bool encode_matches(const Update& u, std::span<const std::uint32_t> positions,
-                    const BlockTable& texels, std::size_t most, std::vector<std::byte>& out);
+                    const BlockTable& texels, std::size_t most, MatchMemory& memory,
+                    std::vector<std::byte>& out);
 Status decode_matches(const Update& u, std::span<const std::uint32_t> positions,
-                      std::span<const std::byte> bytes, std::span<std::byte> texels);
+                      std::span<const std::byte> bytes, std::span<std::byte> texels,
+                      MatchMemory& memory);
 
 }  // namespace gicodec::native

@@ -7,13 +7,14 @@ namespace gicodec::native {
 bool takes_matches(const TextureDesc& desc) noexcept { return desc.presence == Presence::all; }
 
 Status decode_matches(const Update& u, std::span<const std::uint32_t> positions,
-                      std::span<const std::byte> bytes, std::span<std::byte> texels) {
+                      std::span<const std::byte> bytes, std::span<std::byte> texels,
+                      MatchMemory& memory) {
   if (!takes_matches(u.desc)) return Status::corrupt;
   BinaryDecoder coder(bytes);
   const ByteOrder order{static_cast<Difference>(coder.bypass(2)), coder.bypass(1) != 0};
   const auto literals = static_cast<Literals>(coder.bypass(2));
   if (order.difference == Difference::past && !u.update) return Status::corrupt;
-  MatchModel model(literals, distances_of(u.desc, order, positions.size()));
+  MatchModel model(literals, distances_of(u.desc, order, positions.size()), memory.trees);
   const std::size_t block = u.block_bytes();
   ByteWalk to(u, positions, {texels.data(), block}, order), from = to;
   std::uint8_t last = 0;
@@ -26,7 +27,7 @@ Status decode_matches(const Update& u, std::span<const std::uint32_t> positions,
   for (std::size_t done = 0; done < size;) {
     if (coder.overrun()) return Status::truncated;
     if (u.cancelled()) return Status::cancelled;
-    const Match match = model.match(coder, to.byte(), {});
+    const CodedMatch match = model.match(coder, to.byte(), {});
     if (match.length == 0) {
       store(model.literal(coder, to.byte(), last, 0));
       ++done;

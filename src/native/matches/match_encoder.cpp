@@ -6,6 +6,7 @@
 #include <array>
 #include <bit>
 #include <cstring>
+#include <utility>
 
 namespace gicodec::native {
 namespace {
@@ -40,8 +41,9 @@ Price entropy(std::span<const std::uint8_t> bytes) {
 }
 
 /// Of all bytes but the first, by how often each occurs after each.
-Price entropy_after(std::span<const std::uint8_t> bytes) {
-  std::vector<std::uint32_t> count(std::size_t{256} * 256), all(256);
+Price entropy_after(std::span<const std::uint8_t> bytes, std::vector<std::uint32_t>& count) {
+  std::array<std::uint32_t, 256> all{};
+  count.assign(std::size_t{256} * 256, 0);
   for (std::size_t i = 1; i < bytes.size(); ++i) {
     ++count[std::size_t{256} * bytes[i - 1] + bytes[i]];
     ++all[bytes[i - 1]];
@@ -54,15 +56,14 @@ Price entropy_after(std::span<const std::uint8_t> bytes) {
   return price;
 }
 
-std::vector<std::uint8_t> bytes_in(const Update& u, std::span<const std::uint32_t> positions,
-                                   const BlockTable& texels, ByteOrder order) {
+void read_bytes(const Update& u, std::span<const std::uint32_t> positions, const BlockTable& texels,
+                ByteOrder order, std::vector<std::uint8_t>& bytes) {
   ByteWalk walk(u, positions, texels, order);
-  std::vector<std::uint8_t> bytes(walk.size());
+  bytes.resize(walk.size());
   for (auto& byte : bytes) {
     byte = walk.difference();
     walk.step();
   }
-  return bytes;
 }
 
 std::uint32_t word_at(const std::uint8_t* bytes) {
@@ -81,12 +82,15 @@ Price price_of_literal(std::span<const std::uint8_t> bytes) {
 }
 
 /// What matches leave, about; in little time.
-Price quick_look(std::span<const std::uint8_t> bytes, const Distances& distances) {
+Price quick_look(const Distances& distances, MatchMemory& memory) {
   constexpr unsigned kHashBits = 15;
+  const std::span<const std::uint8_t> bytes = memory.bytes;
   const Price literal = price_of_literal(bytes);
-  std::vector<std::uint32_t> before(std::size_t{1} << kHashBits, UINT32_MAX);
+  auto& before = memory.first;
+  before.assign(std::size_t{1} << kHashBits, UINT32_MAX);
   LastDistances last(distances);
-  std::vector<std::uint8_t> literals;
+  auto& literals = memory.literals;
+  literals.clear();
   Price price = 0;
   std::size_t at = 0;
   while (at + 4 <= bytes.size()) {
@@ -122,8 +126,11 @@ Price quick_look(std::span<const std::uint8_t> bytes, const Distances& distances
 /// Where the same bytes were before, the nearest first.
 class MatchFinder {
  public:
-  explicit MatchFinder(std::span<const std::uint8_t> bytes)
-      : bytes_(bytes), first_(std::size_t{1} << kHashBits, kEnd), before_(bytes.size(), kEnd) {}
+  explicit MatchFinder(MatchMemory& memory)
+      : bytes_(memory.bytes), first_(memory.first), before_(memory.before) {
+    first_.assign(std::size_t{1} << kHashBits, kEnd);
+    before_.assign(bytes_.size(), kEnd);
+  }
 
   /// body(place) for each until it says no, at most kMostLooks.
   template <typename Body>
@@ -150,37 +157,37 @@ class MatchFinder {
   }
 
   std::span<const std::uint8_t> bytes_;
-  std::vector<std::uint32_t> first_, before_;
+  std::vector<std::uint32_t>&first_, &before_;
 };
 
 /// Literals and matches of the bytes. Takes what saves most bits, and looks one byte ahead.
 class Parser {
  public:
-  Parser(std::span<const std::uint8_t> bytes, const Distances& distances)
-      : bytes_(bytes),
+  Parser(const Distances& distances, MatchMemory& memory)
+      : bytes_(memory.bytes),
         unit_(distances.unit),
-        finder_(bytes),
+        finder_(memory),
         last_(distances),
-        of_literal_(price_of_literal(bytes)) {}
+        of_literal_(price_of_literal(bytes_)) {}
 
-  std::vector<Match> parse() {
-    std::vector<Match> parts;
+  void parse(std::vector<MatchPart>& parts) {
+    parts.clear();
+    std::uint32_t literals = 0;
     Choice now = best(0);
     for (std::size_t at = 0; at < bytes_.size();) {
       const bool looks = now.match.length < kEnough && at + 1 < bytes_.size();
       const Choice next = looks ? best(at + 1) : Choice{};
       if (now.match.length == 0 || next.saved > now.saved + kBit) {
-        parts.push_back({});
+        ++literals;
         ++at;
         now = next;
         continue;
       }
-      parts.push_back(now.match);
+      parts.push_back({std::exchange(literals, 0U), now.match});
       last_.use(now.match.distance);
       at += now.match.length;
       if (at < bytes_.size()) now = best(at);
     }
-    return parts;
   }
 
  private:
@@ -196,7 +203,7 @@ class Parser {
     const auto offer = [&](std::size_t from, std::size_t length, Price price) {
       const Price saved = static_cast<Price>(length) * of_literal_ - price;
       if (length == 0 || saved <= best.saved) return;
-      best = {{static_cast<std::uint32_t>(length), at - from}, saved};
+      best = {{static_cast<std::uint32_t>(length), static_cast<std::uint32_t>(at - from)}, saved};
     };
     for (unsigned i = 0; i < kLastDistances; ++i) {
       if (last_[i] > at) continue;
@@ -228,32 +235,42 @@ class Parser {
   Price of_literal_;
 };
 
-void write(std::span<const std::uint8_t> bytes, std::span<const Match> parts, ByteOrder order,
-           Literals literals, const Distances& distances, std::size_t record,
+/// Literals, and matches if there are `parts`.
+void write(std::span<const MatchPart> parts, ByteOrder order, Literals literals,
+           const Distances& distances, std::size_t record, MatchMemory& memory,
            std::vector<std::byte>& out) {
   out.push_back(std::byte{kMatchChunk});
   BinaryEncoder coder(out);
   coder.bypass(2, static_cast<std::uint32_t>(order.difference));
   coder.bypass(1, order.planes ? 1 : 0);
   coder.bypass(2, static_cast<std::uint32_t>(literals));
-  MatchModel model(literals, distances);
+  MatchModel model(literals, distances, memory.trees);
+  const std::span<const std::uint8_t> bytes = memory.bytes;
   const std::size_t records = bytes.size() / record;
   std::size_t at = 0;
-  for (const Match& part : parts) {
-    const std::size_t byte = order.planes ? at / records : at % record;
-    model.match(coder, byte, part);
-    const std::uint8_t before = at > 0 ? bytes[at - 1] : std::uint8_t{0};
-    if (part.length == 0) model.literal(coder, byte, before, bytes[at]);
-    at += std::max(part.length, 1U);
+  const auto byte = [&] { return order.planes ? at / records : at % record; };
+  const auto write_literals = [&](std::size_t end) {
+    for (; at < end; ++at) {
+      model.match(coder, byte(), {});
+      model.literal(coder, byte(), at > 0 ? bytes[at - 1] : std::uint8_t{0}, bytes[at]);
+    }
+  };
+  for (const auto& [count, match] : parts) {
+    write_literals(at + count);
+    model.match(coder, byte(), {match.length, match.distance});
+    at += match.length;
   }
+  write_literals(bytes.size());
   coder.finish();
 }
 
 }  // namespace
 
 bool encode_matches(const Update& u, std::span<const std::uint32_t> positions,
-                    const BlockTable& texels, std::size_t most, std::vector<std::byte>& out) {
-  if (!takes_matches(u.desc)) return false;
+                    const BlockTable& texels, std::size_t most, MatchMemory& memory,
+                    std::vector<std::byte>& out) {
+  constexpr std::size_t kMostBytes = 1U << 30;  // numbers, and places
+  if (!takes_matches(u.desc) || positions.size() * u.block_bytes() > kMostBytes) return false;
   // What a quick look sees is larger than what it becomes.
   Price least = static_cast<Price>(most + 64) * 8 * kBit * 4 / 3;
   ByteOrder order;
@@ -263,9 +280,9 @@ bool encode_matches(const Update& u, std::span<const std::uint32_t> positions,
     if (difference == Difference::past && !u.update) continue;
     for (const bool planes : {false, true}) {
       const ByteOrder one{difference, planes};
-      const auto bytes = bytes_in(u, positions, texels, one);
-      const Price price = std::min(quick_look(bytes, distances_of(u.desc, one, positions.size())),
-                                   entropy_after(bytes));
+      read_bytes(u, positions, texels, one, memory.bytes);
+      const Price price = std::min(quick_look(distances_of(u.desc, one, positions.size()), memory),
+                                   entropy_after(memory.bytes, memory.counts));
       if (price >= least) continue;
       least = price;
       order = one;
@@ -273,23 +290,22 @@ bool encode_matches(const Update& u, std::span<const std::uint32_t> positions,
     }
   }
   if (!found) return false;
-  const auto bytes = bytes_in(u, positions, texels, order);
+  read_bytes(u, positions, texels, order, memory.bytes);
   const Distances distances = distances_of(u.desc, order, positions.size());
   const std::size_t begin = out.size();
   std::size_t smallest = most + 1;
-  const auto try_as = [&](std::span<const Match> parts, Literals literals) {
+  const auto try_as = [&](std::span<const MatchPart> parts, Literals literals) {
     const std::size_t end = out.size();
-    write(bytes, parts, order, literals, distances, u.desc.record.bytes, out);
+    write(parts, order, literals, distances, u.desc.record.bytes, memory, out);
     const bool smaller = out.size() - end < smallest;
     if (smaller) smallest = out.size() - end;
     const auto place = [&](std::size_t i) { return out.begin() + static_cast<std::ptrdiff_t>(i); };
     out.erase(place(smaller ? begin : end), smaller ? place(end) : out.end());
   };
-  const auto parts = Parser(bytes, distances).parse();
-  const std::vector<Match> none(bytes.size());
+  Parser(distances, memory).parse(memory.parts);
   for (unsigned l = 0; l < kLiterals; ++l) {
-    try_as(parts, static_cast<Literals>(l));
-    if (l != 0) try_as(none, static_cast<Literals>(l));
+    try_as(memory.parts, static_cast<Literals>(l));
+    if (l != 0) try_as({}, static_cast<Literals>(l));
   }
   return out.size() != begin;
 }

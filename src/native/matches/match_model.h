@@ -1,7 +1,7 @@
 // How literals, lengths and distances are coded, in both directions (docs/native/matches.md).
 #pragma once
 
-#include "base/binary_coder.h"
+#include "native/matches/bit_tree.h"
 #include "native/matches/byte_order.h"
 
 #include <algorithm>
@@ -11,39 +11,6 @@
 #include <vector>
 
 namespace gicodec::native {
-
-/// A bit whose probability follows its past.
-struct MatchBit {
-  static constexpr std::uint32_t kMin = 1U << (kBitScale - 11), kMostAsked = 126;
-  std::uint16_t one = 1U << (kBitScale - 1);
-  std::uint8_t asked = 0;
-
-  template <typename Coder>
-  bool code(Coder& coder, bool value) {
-    constexpr std::uint32_t kAll = 1U << kBitScale;
-    const bool bit = coder.bit(std::clamp<std::uint32_t>(one, kMin, kAll - kMin), value);
-    const std::uint32_t off = bit ? kAll - 1 - one : one;
-    const std::uint32_t step = 2 * off / (2 * asked + 3U);
-    one = static_cast<std::uint16_t>(bit ? one + step : one - step);
-    if (asked < kMostAsked) ++asked;
-    return bit;
-  }
-};
-
-/// Symbols of `kBits` bits, the highest first, each by those before it.
-template <unsigned kBits>
-struct BitTree {
-  std::array<MatchBit, 1U << kBits> node;
-
-  template <typename Coder>
-  std::uint32_t code(Coder& coder, std::uint32_t value, unsigned bits = kBits) {
-    std::uint32_t at = 1;
-    for (unsigned left = bits; left-- > 0;) {
-      at = at << 1 | (node[at].code(coder, (value >> left & 1) != 0) ? 1U : 0U);
-    }
-    return at - (1U << bits);
-  }
-};
 
 /// Numbers below 2^31: how many bits they have, then the four highest and the four lowest of those
 /// below the first by trees.
@@ -82,8 +49,9 @@ enum class Literals : std::uint8_t {
 };
 inline constexpr unsigned kLiterals = 4;
 
-struct Match {
-  std::uint32_t length = 0;  ///< 0: a literal
+/// What a stream says: a length of 0 is a literal.
+struct CodedMatch {
+  std::uint32_t length = 0;
   std::uint64_t distance = 0;
 };
 
@@ -118,16 +86,18 @@ class LastDistances {
 /// Codes literals and matches, one after the other.
 class MatchModel {
  public:
-  MatchModel(Literals literals, const Distances& distances)
+  /// `trees`: memory for those of literals.
+  MatchModel(Literals literals, const Distances& distances, std::vector<BitTree<8>>& trees)
       : literals_(literals),
         unit_(distances.unit > kLargestUnit ? 1 : static_cast<std::uint32_t>(distances.unit)),
-        last_(distances) {
-    trees_.resize(literals == Literals::after ? 256 : kByteContexts);
+        last_(distances),
+        trees_(trees) {
+    trees_.assign(literals == Literals::after ? 256 : kByteContexts, {});
   }
 
   /// `byte`: index in its record. A length that is 0 says that a literal follows.
   template <typename Coder>
-  Match match(Coder& coder, std::size_t byte, Match match) {
+  CodedMatch match(Coder& coder, std::size_t byte, CodedMatch match) {
     const std::size_t context = std::min<std::size_t>(byte, kByteContexts - 1);
     const bool is_match = is_match_[after_][context].code(coder, match.length != 0);
     if (!is_match) {
@@ -178,7 +148,7 @@ class MatchModel {
   std::uint32_t unit_;  // distances are multiples of it, most of all
   unsigned after_ = 0;  // a literal, a match of a new distance, of a last one
   LastDistances last_;
-  std::vector<BitTree<8>> trees_;
+  std::vector<BitTree<8>>& trees_;
   std::array<std::array<MatchBit, kByteContexts>, 3> is_match_;
   std::array<MatchBit, 3> repeats_;
   BitTree<2> which_;
