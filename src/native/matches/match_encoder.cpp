@@ -6,6 +6,7 @@
 #include <array>
 #include <bit>
 #include <cstring>
+#include <limits>
 #include <utility>
 
 namespace gicodec::native {
@@ -42,6 +43,8 @@ Price entropy(std::span<const std::uint8_t> bytes) {
 
 /// Of all bytes but the first, by how often each occurs after each.
 Price entropy_after(std::span<const std::uint8_t> bytes, std::vector<std::uint32_t>& count) {
+  constexpr std::size_t kFewBytes = 4096;  // whose trees would learn little
+  if (bytes.size() < kFewBytes) return std::numeric_limits<Price>::max();
   std::array<std::uint32_t, 256> all{};
   count.assign(std::size_t{256} * 256, 0);
   for (std::size_t i = 1; i < bytes.size(); ++i) {
@@ -83,7 +86,7 @@ Price price_of_literal(std::span<const std::uint8_t> bytes) {
 
 /// What matches leave, about; in little time.
 Price quick_look(const Distances& distances, MatchMemory& memory) {
-  constexpr unsigned kHashBits = 15;
+  constexpr unsigned kHashBits = 15, kFewMisses = 6;
   const std::span<const std::uint8_t> bytes = memory.bytes;
   const Price literal = price_of_literal(bytes);
   auto& before = memory.first;
@@ -92,7 +95,7 @@ Price quick_look(const Distances& distances, MatchMemory& memory) {
   auto& literals = memory.literals;
   literals.clear();
   Price price = 0;
-  std::size_t at = 0;
+  std::size_t at = 0, missed = 0;
   while (at + 4 <= bytes.size()) {
     auto& place = before[word_at(&bytes[at]) * 0x9E3779B1U >> (32 - kHashBits)];
     Price saved = 0, paid = 0;
@@ -112,9 +115,13 @@ Price quick_look(const Distances& distances, MatchMemory& memory) {
     if (place != UINT32_MAX) offer(place, kPriceOfNew + log2_of(at - place));
     place = static_cast<std::uint32_t>(at);
     if (length == 0) {
-      literals.push_back(bytes[at++]);
+      // Where nothing repeats there are longer and longer steps.
+      const std::size_t step = std::min(1 + (missed++ >> kFewMisses), bytes.size() - at);
+      literals.insert(literals.end(), &bytes[at], &bytes[at] + step);
+      at += step;
       continue;
     }
+    missed = 0;
     price += paid;
     last.use(distance);
     at += length;
@@ -270,9 +277,13 @@ bool encode_matches(const Update& u, std::span<const std::uint32_t> positions,
                     const BlockTable& texels, std::size_t most, MatchMemory& memory,
                     std::vector<std::byte>& out) {
   constexpr std::size_t kMostBytes = 1U << 30;  // numbers, and places
+  constexpr std::size_t kLook = 1U << 16;
   if (!takes_matches(u.desc) || positions.size() * u.block_bytes() > kMostBytes) return false;
-  // What a quick look sees is larger than what it becomes.
-  Price least = static_cast<Price>(most + 64) * 8 * kBit * 4 / 3;
+  // A quick look at some blocks in the middle. What it sees is larger than what it becomes.
+  const std::size_t blocks = std::clamp<std::size_t>(kLook / u.block_bytes(), 1, positions.size());
+  const auto some = positions.subspan((positions.size() - blocks) / 2, blocks);
+  const std::uint64_t hope = std::uint64_t{most + 64} * blocks / positions.size();
+  Price least = static_cast<Price>(hope) * 8 * kBit * 4 / 3;
   ByteOrder order;
   bool found = false;
   for (unsigned d = 0; d < kDifferences; ++d) {
@@ -280,8 +291,8 @@ bool encode_matches(const Update& u, std::span<const std::uint32_t> positions,
     if (difference == Difference::past && !u.update) continue;
     for (const bool planes : {false, true}) {
       const ByteOrder one{difference, planes};
-      read_bytes(u, positions, texels, one, memory.bytes);
-      const Price price = std::min(quick_look(distances_of(u.desc, one, positions.size()), memory),
+      read_bytes(u, some, texels, one, memory.bytes);
+      const Price price = std::min(quick_look(distances_of(u.desc, one, blocks), memory),
                                    entropy_after(memory.bytes, memory.counts));
       if (price >= least) continue;
       least = price;
