@@ -35,7 +35,7 @@ Status decode_matches(const Update& u, std::span<const std::uint32_t> positions,
     }
     if (match.distance == 0 || match.distance > done || match.length > size - done)
       return coder.overrun() ? Status::truncated : Status::corrupt;
-    from.seek(done - match.distance);
+    from.seek(done - static_cast<std::size_t>(match.distance));
     for (std::uint32_t i = 0; i < match.length; ++i) {
       store(from.difference());
       from.step();

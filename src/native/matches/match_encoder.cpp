@@ -110,7 +110,7 @@ Price quick_look(const Distances& distances, MatchMemory& memory) {
       distance = at - from;
     };
     for (unsigned i = 0; i < kLastDistances; ++i) {
-      if (last[i] <= at) offer(at - last[i], kPriceOfLast);
+      if (last[i] <= at) offer(static_cast<std::size_t>(at - last[i]), kPriceOfLast);
     }
     if (place != UINT32_MAX) offer(place, kPriceOfNew + log2_of(at - place));
     place = static_cast<std::uint32_t>(at);
@@ -214,7 +214,7 @@ class Parser {
     };
     for (unsigned i = 0; i < kLastDistances; ++i) {
       if (last_[i] > at) continue;
-      const std::size_t from = at - last_[i];
+      const std::size_t from = at - static_cast<std::size_t>(last_[i]);
       offer(from, length_at(bytes_, from, at), kPriceOfLast);
     }
     std::size_t longest = kMinMatch - 1;
