@@ -12,8 +12,6 @@
 namespace gicodec::native {
 namespace {
 
-constexpr std::size_t kNone = SIZE_MAX;
-
 /// Prices are whole numbers, the same on every machine: of 1/256 bits.
 using Price = std::int64_t;
 constexpr Price kBit = 256;
