@@ -14,7 +14,7 @@
 
 namespace gicodec::native {
 
-inline constexpr std::uint32_t kMaxChunkProbes = 4096;  ///< of modelled chunks
+inline constexpr std::uint32_t kMaxChunkProbes = 4096;  ///< of modelled and token chunks
 inline constexpr std::uint32_t kMaxBoxProbes = 1U << 20;
 
 /// Boxes of probes that the grid is cut into, from its origin; the last of a row may be smaller.
@@ -29,6 +29,11 @@ struct ChunkGrid {
 [[nodiscard]] ChunkGrid chunk_grid(const Grid& grid, const Grid& box) noexcept;
 /// An encoder's choice: halves the longest side until a chunk has at most `target` probes.
 [[nodiscard]] Grid default_box(const Grid& grid, std::uint32_t target) noexcept;
+
+/// Whether its chunk may be modelled or of tokens.
+[[nodiscard]] inline bool is_small_box(const Grid& box) noexcept {
+  return std::size_t{box.x} * box.y * box.z <= kMaxChunkProbes;
+}
 
 /// Where a probe lies in its box, and the number of that place.
 [[nodiscard]] inline Grid place_in_box(const Grid& grid, const Grid& box, std::uint32_t probe) {

@@ -113,6 +113,14 @@ Status decode_chunk(const Update& u, std::span<const std::uint32_t> positions,
   const auto first = reader.fixed<std::uint8_t>();
   if (!reader.ok()) return reader.status();
   if (statistics != nullptr) ++statistics->chunks;
+  // What is behind the first byte, counted as words.
+  const auto stream = [&] {
+    if (statistics != nullptr) {
+      ++statistics->head_bytes;
+      statistics->word_bytes += bytes.size() - 1;
+    }
+    return reader.rest();
+  };
   if (first == kRawChunk) {
     if (statistics != nullptr) {
       ++statistics->raw_chunks;
@@ -122,33 +130,17 @@ Status decode_chunk(const Update& u, std::span<const std::uint32_t> positions,
     return decode_raw(u, positions, reader.rest(), texels);
   }
   if (first == kAdaptiveChunk) {
-    if (statistics != nullptr) {
-      ++statistics->head_bytes;
-      statistics->word_bytes += bytes.size() - 1;
-    }
-    return decode_adaptive(u, positions, reader.rest(), texels, w.models);
+    return decode_adaptive(u, positions, stream(), texels, w.models);
   }
   if (first == kRowChunk) {
-    if (statistics != nullptr) {
-      ++statistics->head_bytes;
-      statistics->word_bytes += bytes.size() - 1;
-    }
-    return decode_rows(u, positions, reader.rest(), texels, w.rows, w.models.values);
+    return decode_rows(u, positions, stream(), texels, w.rows, w.models.values);
   }
   if (first == kMatchChunk) {
-    if (statistics != nullptr) {
-      ++statistics->head_bytes;
-      statistics->word_bytes += bytes.size() - 1;
-    }
-    return decode_matches(u, positions, reader.rest(), texels, w.matches);
+    return decode_matches(u, positions, stream(), texels, w.matches);
   }
-  if (std::size_t{u.box.x} * u.box.y * u.box.z > kMaxChunkProbes) return Status::corrupt;
+  if (!is_small_box(u.box)) return Status::corrupt;
   if ((first & 3) == kTokenChunk) {
-    if (statistics != nullptr) {
-      ++statistics->head_bytes;
-      statistics->word_bytes += bytes.size() - 1;
-    }
-    return decode_tokens(u, positions, first, reader.rest(), texels, w.tokens);
+    return decode_tokens(u, positions, first, stream(), texels, w.tokens);
   }
   ChunkHead& head = w.head;
   Input in{};

@@ -272,10 +272,6 @@ void encode_raw(const Update& u, std::span<const std::uint32_t> positions, const
   }
 }
 
-bool may_be_modelled(const Update& u) {
-  return std::size_t{u.box.x} * u.box.y * u.box.z <= kMaxChunkProbes;
-}
-
 /// Appends a modelled chunk unless it would have more than `most` bytes; false then.
 bool encode_modelled(const Update& u, std::span<const std::uint32_t> positions,
                      const BlockTable& texels, const EncodeSettings& settings, std::size_t most,
@@ -383,7 +379,7 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
   } else {
     if (by_rows) tried(rows);
     const bool tries = !done || (settings.others && planes_may_pay(u, raw_size));
-    if (tries && may_be_modelled(u)) {
+    if (tries && is_small_box(u.box)) {
       tried([&](std::size_t most) {
         return encode_modelled(u, positions, texels, settings, most, w, out);
       });

@@ -298,7 +298,7 @@ Status check_payload(const TextureDesc& desc, std::size_t probes,
   for (const auto bytes : head.chunks) {
     const unsigned kind = std::to_integer<unsigned>(bytes[0]) & 3;
     const bool small = kind == kModelledChunk || kind == kTokenChunk;
-    if (small && volume > kMaxChunkProbes) return Status::corrupt;
+    if (small && !is_small_box(head.box)) return Status::corrupt;
     // Heads of updates have all that those of keyframes have.
     const Status status = check_chunk(desc, head.layout, true, bytes, memory.chunk_head);
     if (status != Status::ok) return status;

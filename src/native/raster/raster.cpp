@@ -6,14 +6,6 @@
 #include <algorithm>
 
 namespace gicodec::native {
-namespace {
-
-Grid place_in_grid(const Grid& grid, std::uint32_t block) {
-  return {block % grid.x, block / grid.x % grid.y, block / grid.x / grid.y};
-}
-
-}  // namespace
-
 bool fits_raster(const TextureDesc& desc, const Grid& box) noexcept {
   const std::uint64_t blocks = std::uint64_t{box.x} * box.y * box.z;
   return blocks == 1 || blocks * record_count(desc.block) * desc.record.count <= kMaxRasterValues;
@@ -41,13 +33,7 @@ std::uint32_t blocks_of_raster(const TextureDesc& desc) noexcept {
 }
 
 std::size_t blocks_around(const Update& u, std::span<const std::uint32_t> positions) {
-  Grid first = u.desc.grid, last{};
-  for (const std::uint32_t position : positions) {
-    const Grid place = place_in_grid(u.desc.grid, u.probes[position]);
-    first = {std::min(first.x, place.x), std::min(first.y, place.y), std::min(first.z, place.z)};
-    last = {std::max(last.x, place.x), std::max(last.y, place.y), std::max(last.z, place.z)};
-  }
-  return std::size_t{last.x - first.x + 1} * (last.y - first.y + 1) * (last.z - first.z + 1);
+  return box_around(u.desc.grid, u.probes, positions).count();
 }
 
 std::uint64_t raster_memory(const TextureDesc& desc) noexcept {
@@ -63,10 +49,8 @@ std::uint64_t raster_memory(const TextureDesc& desc) noexcept {
 template <typename Body>
 void Raster::for_each_record(const Update& u, std::uint32_t block, const Body& body) const {
   const auto& b = u.desc.block;
-  const Grid place = place_in_grid(u.desc.grid, block);
-  const std::size_t x0 = std::size_t{place.x - first_.x} * b.x,
-                    y0 = std::size_t{place.y - first_.y} * b.y,
-                    z0 = std::size_t{place.z - first_.z} * b.z;
+  const Grid first = box_.texel_of(u.desc, block);
+  const std::size_t x0 = first.x, y0 = first.y, z0 = first.z;
   std::uint32_t record = 0;
   for (std::size_t z = z0; z < z0 + b.z; ++z) {
     for (std::size_t y = y0; y < y0 + b.y; ++y) {
@@ -78,16 +62,9 @@ void Raster::for_each_record(const Update& u, std::uint32_t block, const Body& b
 
 void Raster::lay_out(const Update& u, std::span<const std::uint32_t> positions) {
   channels_ = channels_of(u.desc.record);
-  Grid last{};
-  first_ = u.desc.grid;
-  for (const std::uint32_t position : positions) {
-    const Grid place = place_in_grid(u.desc.grid, u.probes[position]);
-    first_ = {std::min(first_.x, place.x), std::min(first_.y, place.y),
-              std::min(first_.z, place.z)};
-    last = {std::max(last.x, place.x), std::max(last.y, place.y), std::max(last.z, place.z)};
-  }
-  size_ = {(last.x - first_.x + 1) * u.desc.block.x, (last.y - first_.y + 1) * u.desc.block.y,
-           (last.z - first_.z + 1) * u.desc.block.z};
+  box_ = box_around(u.desc.grid, u.probes, positions);
+  size_ = {box_.blocks.x * u.desc.block.x, box_.blocks.y * u.desc.block.y,
+           box_.blocks.z * u.desc.block.z};
   const std::size_t texels = std::size_t{size_.x} * size_.y * size_.z;
   coded_.assign(texels + 1, 0);
   now_.resize((texels + 1) * channels_.count);
@@ -97,15 +74,10 @@ void Raster::lay_out(const Update& u, std::span<const std::uint32_t> positions) 
     for (std::size_t i = 1; i <= texels; ++i) now(i)[c] = zero;
   }
   if (u.mirrored) {
-    const Grid& grid = u.desc.grid;
-    for (std::uint32_t z = first_.z; z <= last.z; ++z) {
-      for (std::uint32_t y = first_.y; y <= last.y; ++y) {
-        for (std::uint32_t x = first_.x; x <= last.x; ++x) {
-          const std::uint32_t block = x + grid.x * (y + grid.y * z);
-          if (u.mirror.is_received(block)) read(u, block, u.mirror.blocks[block], nullptr);
-        }
-      }
-    }
+    box_.for_each_received(u.desc.grid, u.mirror,
+                           [&](std::uint32_t block, std::span<const std::byte> records) {
+                             read(u, block, records, nullptr);
+                           });
   }
   past_.clear();
   if (u.update) past_.assign(now_.begin(), now_.end());

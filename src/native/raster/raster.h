@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/memory.h"
+#include "native/raster/block_box.h"
 #include "native/raster/channels.h"
 
 #include <gicodec/backend.h>
@@ -72,7 +73,8 @@ class Raster {
             const std::uint8_t* wanted);
 
   Channels channels_;
-  Grid first_, size_;  ///< in blocks; in texels
+  BlockBox box_;
+  Grid size_;  ///< in texels
   std::size_t coded_texels_ = 0;
   Vector<std::uint8_t> coded_;  ///< by texel
   Vector<std::uint32_t> now_, past_;

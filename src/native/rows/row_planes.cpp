@@ -11,9 +11,6 @@ bool takes_rows(const TextureDesc& desc) noexcept { return takes_raster(desc); }
 
 namespace {
 
-Grid place_in_grid(const Grid& grid, std::uint32_t block) {
-  return {block % grid.x, block / grid.x % grid.y, block / grid.x / grid.y};
-}
 std::size_t round_up(std::size_t n, std::size_t to) { return (n + to - 1) / to * to; }
 
 /// Rows of blocks, most of which have 8 texels.
@@ -39,18 +36,10 @@ void RowPlanes::lay_out(const Update& u, std::span<const std::uint32_t> position
     plane_of_[c] = static_cast<std::uint8_t>(plane);
     plane += is_wide(c) ? 2 : 1;
   }
-  Grid last{};
-  first_ = u.desc.grid;
-  for (const std::uint32_t position : positions) {
-    const Grid place = place_in_grid(u.desc.grid, u.probes[position]);
-    first_ = {std::min(first_.x, place.x), std::min(first_.y, place.y),
-              std::min(first_.z, place.z)};
-    last = {std::max(last.x, place.x), std::max(last.y, place.y), std::max(last.z, place.z)};
-  }
-  blocks_ = {last.x - first_.x + 1, last.y - first_.y + 1, last.z - first_.z + 1};
-  columns_ = std::size_t{blocks_.x} * u.desc.block.x;
-  rows_of_slice_ = std::size_t{blocks_.y} * u.desc.block.y;
-  rows_ = rows_of_slice_ * blocks_.z * u.desc.block.z;
+  box_ = box_around(u.desc.grid, u.probes, positions);
+  columns_ = std::size_t{box_.blocks.x} * u.desc.block.x;
+  rows_of_slice_ = std::size_t{box_.blocks.y} * u.desc.block.y;
+  rows_ = rows_of_slice_ * box_.blocks.z * u.desc.block.z;
   stride_ = round_up(columns_, 8) + kMargin;
   plane_ = (1 + rows_ + kLanes) * stride_ + 2 * kMargin;
   const std::size_t size = channels_.count * plane_;
@@ -65,10 +54,8 @@ void RowPlanes::lay_out(const Update& u, std::span<const std::uint32_t> position
 template <typename Body>
 void RowPlanes::for_each_row(const Update& u, std::uint32_t block, const Body& body) const {
   const auto& b = u.desc.block;
-  const Grid place = place_in_grid(u.desc.grid, block);
-  const std::size_t x0 = std::size_t{place.x - first_.x} * b.x,
-                    y0 = std::size_t{place.y - first_.y} * b.y,
-                    z0 = std::size_t{place.z - first_.z} * b.z;
+  const Grid first = box_.texel_of(u.desc, block);
+  const std::size_t x0 = first.x, y0 = first.y, z0 = first.z;
   std::size_t value = 0;
   for (std::size_t z = z0; z < z0 + b.z; ++z) {
     for (std::size_t y = y0; y < y0 + b.y; ++y, value += b.x) {
@@ -78,15 +65,9 @@ void RowPlanes::for_each_row(const Update& u, std::uint32_t block, const Body& b
 }
 
 void RowPlanes::load_mirror(const Update& u) {
-  const Grid& grid = u.desc.grid;
-  for (std::uint32_t z = first_.z; z < first_.z + blocks_.z; ++z) {
-    for (std::uint32_t y = first_.y; y < first_.y + blocks_.y; ++y) {
-      for (std::uint32_t x = first_.x; x < first_.x + blocks_.x; ++x) {
-        const std::uint32_t block = x + grid.x * (y + grid.y * z);
-        if (u.mirror.is_received(block)) load(u, block, u.mirror.blocks[block]);
-      }
-    }
-  }
+  box_.for_each_received(
+      u.desc.grid, u.mirror,
+      [&](std::uint32_t block, std::span<const std::byte> records) { load(u, block, records); });
 }
 
 void RowPlanes::load(const Update& u, std::uint32_t block, std::span<const std::byte> records) {

@@ -71,7 +71,7 @@ class RowPlanes {
 
   Channels channels_;
   std::array<std::uint8_t, kMaxComponents> plane_of_{};  ///< of kernels, the first, by channel
-  Grid first_, blocks_;
+  BlockBox box_;
   std::size_t columns_ = 0, rows_ = 0, stride_ = 0, plane_ = 0;
   std::size_t rows_of_slice_ = 0;
   Vector<std::uint16_t> values_, block_;
