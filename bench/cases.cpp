@@ -7,10 +7,16 @@
 namespace gicodec::bench {
 
 std::vector<Case> cases(Isa isa) {
-  std::vector<Case> all = {{"raw", "raw", ""},
+  std::vector<Case> all = {{.label = "raw", .backend = "raw", .difference = false},
+                           {"lz4, acceleration 16", "lz4", "", -16},
+                           {"lz4, acceleration 4", "lz4", "", -4},
                            {"lz4 -1", "lz4", "", 1},
+                           {"zstd --fast=5", "zstd", "", -5},
+                           {"zstd --fast=1", "zstd", "", -1},
+                           {"zstd -1", "zstd", "", 1},
                            {"zstd -3", "zstd", "", 3},
                            {"zstd -19", "zstd", "", 19, nullptr, true},
+                           {"native turbo", "native", "turbo"},
                            {"native fast", "native", "fast"},
                            {"native strong", "native", "strong"}};
 #ifdef GICODEC_HAS_HEVC
@@ -40,6 +46,7 @@ Encoder make_encoder(const TextureDesc& desc, const Case& c, unsigned threads) {
   options.settings.preset = c.preset;
   options.settings.level = c.level;
   options.settings.isa = c.isa;
+  options.settings.difference = c.difference;
   options.gop = 0;
   if (c.object != nullptr) options.backends = {c.object};
   return *Encoder::create(desc, options);

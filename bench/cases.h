@@ -16,6 +16,7 @@ struct Case {
   int level = 0;
   const Backend* object = nullptr;  ///< where not built in
   bool slow = false;                ///< left out by --quick
+  bool difference = true;           ///< raw: to the mirror
   Isa isa = best_isa();
 };
 [[nodiscard]] std::vector<Case> cases(Isa isa);

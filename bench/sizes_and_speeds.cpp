@@ -4,9 +4,9 @@
 // (whole packets), the ratio to the full atlas over the sequence, and, for updates of every probe,
 // bytes of records per second of processor time of one thread, encode and decode, and what encoder
 // and decoder hold on the heap between two of them, scratch and state included. Then bytes per
-// probe and time of updates of a few probes. Per sequence: how long an update of every probe of all
-// textures takes from end to end, by the clock, with --threads (2), and the speeds of a link at
-// which native delivers it first.
+// probe and time of updates of a few probes. Per sequence: how long updates of all textures, of
+// every probe and of a few, take from end to end, by the clock, with --threads (2), and what
+// delivers them first on which links.
 #include "cases.h"
 #include "delivery.h"
 #include "small_updates.h"
@@ -200,7 +200,7 @@ int run(int argc, char** argv) {
            json.open(path);
            if (!json) tools::fail(tools::Exit::io, "{}: cannot be written", path);
          },
-         "Write the first table's rows there, too, an object a line")
+         "Write all but small updates' rows there, too, an object a line")
       ->type_name("FILE");
   if (const auto exit = app.parse(argc, argv)) return static_cast<int>(*exit);
   for (const std::string& path : paths) {
@@ -215,7 +215,7 @@ int run(int argc, char** argv) {
       }
       report_small_updates(t, isa);
     }
-    report_delivery(path, textures, quick, isa, threads);
+    report_delivery(path, textures, quick, isa, threads, json);
   }
   return 0;
 }

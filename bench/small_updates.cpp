@@ -6,11 +6,7 @@
 #include <optional>
 
 namespace gicodec::bench {
-namespace {
 
-constexpr std::size_t kCounts[] = {1, 8, 32, 128};
-
-/// What differs between the first two frames.
 std::vector<std::uint32_t> changed_probes(const Texture& t) {
   Case raw;
   raw.backend = "raw";
@@ -24,14 +20,18 @@ std::vector<std::uint32_t> changed_probes(const Texture& t) {
   return {decoder.changed().begin(), decoder.changed().end()};
 }
 
-std::vector<std::uint32_t> choose(const std::vector<std::uint32_t>& changed, std::size_t count,
-                                  bool spread) {
+std::vector<std::uint32_t> choose_probes(const std::vector<std::uint32_t>& changed,
+                                         std::size_t count, bool spread) {
   std::vector<std::uint32_t> some(count);
   const std::size_t stride = spread ? changed.size() / count : 1;
   const std::size_t first = spread ? stride / 2 : (changed.size() - count) / 2;
   for (std::size_t i = 0; i < count; ++i) some[i] = changed[first + i * stride];
   return some;
 }
+
+namespace {
+
+constexpr std::size_t kCounts[] = {1, 8, 32, 128};
 
 struct Update {
   double bytes = 0;
@@ -77,7 +77,7 @@ void report_small_updates(const Texture& t, Isa isa) {
       fmt::print("{:<26}", c.label);
       for (const auto n : kCounts) {
         const auto u =
-            changed.size() < n ? std::nullopt : measure(t, c, choose(changed, n, spread));
+            changed.size() < n ? std::nullopt : measure(t, c, choose_probes(changed, n, spread));
         if (u) {
           fmt::print(" | {:>5.0f} B {:>6.0f} {:>6.0f}", u->bytes / static_cast<double>(n),
                      u->encode * 1e6, u->decode * 1e6);

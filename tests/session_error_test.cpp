@@ -103,15 +103,18 @@ TEST_F(SessionError, CreateEncoder) {
     options.settings.level = level;
     return status(kDesc, options);
   };
-  for (const int level : {-1, std::numeric_limits<int>::min(), std::numeric_limits<int>::max()}) {
+  for (const int level : {-65, std::numeric_limits<int>::min(), std::numeric_limits<int>::max()}) {
     EXPECT_EQ(with_level("raw", level), Status::invalid_settings);
     EXPECT_EQ(with_level("lz4", level), Status::invalid_settings);
     EXPECT_EQ(with_level("zstd", level), Status::invalid_settings);
   }
   EXPECT_EQ(with_level("raw", 1), Status::invalid_settings);
+  EXPECT_EQ(with_level("raw", -1), Status::invalid_settings);
   EXPECT_EQ(with_level("lz4", 13), Status::invalid_settings);
   EXPECT_EQ(with_level("zstd", 23), Status::invalid_settings);
   EXPECT_EQ(with_level("lz4", 12), Status::ok);
+  EXPECT_EQ(with_level("lz4", -64), Status::ok);
+  EXPECT_EQ(with_level("zstd", -64), Status::ok);
   EXPECT_EQ(with_level("zstd", 22), Status::ok);
   EncoderOptions preset;
   preset.settings.preset = "slow";

@@ -361,7 +361,7 @@ Bytes contents(const Decoder& decoder) { return read_all(decoder); }
 Bytes contents(const Encoder& encoder) { return read_all(encoder); }
 
 std::span<const Coding> codings() {
-  static constexpr std::array<Coding, 14> kCodings{{{"raw", 0, false},
+  static constexpr std::array<Coding, 17> kCodings{{{"raw", 0, false},
                                                     {"raw", 0, true},
                                                     {"lz4", 0, true},
                                                     {"lz4", 1, false},
@@ -373,6 +373,9 @@ std::span<const Coding> codings() {
                                                     {"zstd", 5, true},
                                                     {"zstd", 12, false},
                                                     {"zstd", 19, true},
+                                                    {"lz4", -8, true},
+                                                    {"zstd", -5, false},
+                                                    {"native", 0, true, "turbo"},
                                                     {"native", 0, true, "fast"},
                                                     {"native", 0, true, "strong"}}};
   return kCodings;

@@ -12,7 +12,9 @@ namespace GICODEC_API gicodec {
 
 /// Each backend reads some of these, and refuses a value outside its range with invalid_settings.
 struct BackendSettings {
-  int level = 0;  ///< lz4: 1..12, LZ4HC from 3 on; zstd: 1..22; 0: the backend's default
+  /// lz4: 1..12, LZ4HC from 3 on; zstd: 1..22; both also -64..-1, which are faster and larger, for
+  /// lz4 its acceleration; 0: the backend's default.
+  int level = 0;
   /// native: "turbo" for fast links, "fast" (the default) or "strong"; hevc: an x265 preset; empty:
   /// the backend's default.
   std::string preset = {};

@@ -12,8 +12,20 @@
 namespace gicodec {
 namespace {
 
-constexpr int kLz4MaxLevel = LZ4HC_CLEVEL_MAX;
-constexpr int kZstdMaxLevel = 22;
+struct Levels {
+  int min, max;
+};
+constexpr Levels levels_of(Compression method) {
+  switch (method) {
+    case Compression::lz4:
+      return {-64, LZ4HC_CLEVEL_MAX};
+    case Compression::zstd:
+      return {-64, 22};
+    case Compression::none:
+      return {0, 0};
+  }
+  return {0, 0};
+}
 constexpr int kZstdDefaultLevel = 3;
 
 const char* chars(std::span<const std::byte> bytes) {
@@ -45,10 +57,8 @@ void Decompressor::FreeContext::operator()(ZSTD_DCtx_s* context) const noexcept 
 }
 
 Result<Compressor> Compressor::create(Compression method, int level) {
-  const int max_level = method == Compression::zstd  ? kZstdMaxLevel
-                        : method == Compression::lz4 ? kLz4MaxLevel
-                                                     : 0;
-  if (level < 0 || level > max_level) return Status::invalid_settings;
+  const Levels levels = levels_of(method);
+  if (level < levels.min || level > levels.max) return Status::invalid_settings;
   Compressor compressor;
   compressor.method_ = method;
   compressor.level_ = level;
@@ -94,7 +104,8 @@ Status Compressor::compress(std::span<const std::byte> in, std::vector<std::byte
     const bool high = level_ > 2 && !in.empty();
     const int size =
         high ? LZ4_compress_HC_extStateHC(state_.data(), chars(in), to, in_size, room, level_)
-             : LZ4_compress_fast_extState(state_.data(), chars(in), to, in_size, room, 1);
+             : LZ4_compress_fast_extState(state_.data(), chars(in), to, in_size, room,
+                                          std::max(-level_, 1));
     if (size <= 0) return Status::backend_failed;
     written = static_cast<std::size_t>(size);
   } else {

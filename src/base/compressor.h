@@ -21,7 +21,8 @@ enum class Compression : std::uint8_t { none = 0, lz4 = 1, zstd = 2 };
 
 class Compressor {
  public:
-  /// Levels: lz4 1..12 (LZ4HC from 3 on), zstd 1..22; 0: the default, 1 for lz4, 3 for zstd.
+  /// Levels: lz4 1..12 (LZ4HC from 3 on), zstd 1..22; both -64..-1, faster and larger, of which
+  /// lz4's are its acceleration; 0: the default, 1 for lz4, 3 for zstd.
   [[nodiscard]] static Result<Compressor> create(Compression method, int level);
 
   /// Largest input, 1 GiB; beyond it limit_exceeded. LZ4's own limit is about twice that.

@@ -7,6 +7,7 @@
 #include "native/models/continuous/light_scale.h"
 #include "native/reference_decoder.h"
 #include "native/round_trip.h"
+#include "native/tokens/token_head.h"
 #include "quantise/component_code.h"
 #include "shapes.h"
 
@@ -113,6 +114,16 @@ bool is_adaptive(const test::UpdateCase& u, const Bytes& payload) {
 bool is_rows(const test::UpdateCase& u, const Bytes& payload) {
   return kind_of(u, payload) == std::byte{native::kRowChunk};
 }
+/// Of tokens whose rows continue.
+bool continues(const test::UpdateCase& u, const Bytes& payload) {
+  const auto first = std::to_integer<unsigned>(kind_of(u, payload));
+  return (first & 3) == native::kTokenChunk && (first & native::kContinues) != 0;
+}
+native::PayloadSettings turbo() {
+  native::PayloadSettings settings;
+  settings.chunk.preset = native::Preset::turbo;
+  return settings;
+}
 
 TEST(NativeRasters, EveryFormat) {
   for (const auto& format : test::distinct_formats()) {
@@ -127,7 +138,29 @@ TEST(NativeRasters, EveryFormat) {
       const bool words = std::ranges::all_of(used, [](const auto& c) { return c.bits <= 16; });
       EXPECT_TRUE(!words || is_rows(u, test::encode(u, rows(), best_isa())));
       check_everything(u, rows());
+      EXPECT_TRUE(!words || continues(u, test::encode(u, turbo(), best_isa())));
+      check_everything(u, turbo());
     }
+  }
+}
+
+/// What tokens say about rows that continue takes less than what they say about blocks alone, and
+/// what is flat less than a bit for a texel.
+TEST(NativeRasters, TokensOfMaps) {
+  for (const bool flat : {false, true}) {
+    auto u = update_of(map_texture(Format::R16_SFLOAT, {16, 16, 1}, {8, 8, 1}), true, false);
+    if (flat) {
+      for (std::size_t i = 0; i < u.records.size(); i += 2) {
+        u.records[i] = std::byte{static_cast<std::uint8_t>(i < 256 ? i : 0)};
+        u.records[i + 1] = std::byte{0x3C};
+      }
+    }
+    auto alone = u;
+    alone.desc.model = Model::stacked;
+    const std::size_t size = test::encode(u, turbo(), best_isa()).size();
+    EXPECT_LT(size, flat ? u.records.size() / 16 : test::encode(alone, turbo(), best_isa()).size());
+    check_everything(u, turbo());
+    check_everything(alone, turbo());
   }
 }
 

@@ -281,13 +281,13 @@ class Decoder {
           a.copies[i] = planes.unpack(mirror_.data() + *n * block_bytes_);
         }
       }
-      for (const unsigned i : {0U, 2U, 1U}) {
-        const bool refers = (first & 4) != 0 && beside[i] && done.contains(*beside[i]);
-        if (refers) a.reference = done.at(*beside[i]);
-      }
+      const auto known = [&](unsigned i) { return beside[i] && done.contains(*beside[i]); };
+      for (const unsigned i : {0U, 2U, 1U})
+        if ((first & 4) != 0 && known(i)) a.reference = done.at(*beside[i]);
+      if (known(2)) a.above = std::distance(done.begin(), done.find(*beside[2]));
       return a;
     };
-    TokenReader reader(planes, desc_.block.x, records_, blocks.size());
+    TokenReader reader(planes, desc_.block, records_, blocks.size());
     if (!reader.read(first, in)) return false;
     for (const auto block : blocks) {
       done[block] = reader.next(around(block));

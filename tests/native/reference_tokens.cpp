@@ -1,6 +1,7 @@
 #include "native/reference_tokens.h"
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <optional>
 #include <utility>
@@ -35,7 +36,8 @@ std::optional<std::size_t> varint(Bytes& in) {
 
 bool TokenReader::read(unsigned first, Bytes& in) {
   const unsigned k = first >> 3 & 7;
-  if (first >> 6 != 0 || k > 4) return false;
+  continues_ = (first & 0x40) != 0;
+  if (first >> 7 != 0 || (continues_ && (first & 4) != 0) || k > 4) return false;
   std::uint64_t coded = 0;
   for (std::size_t p = 0; p < planes_.size(); p += 8) coded |= std::uint64_t{in.u8()} << p;
   if (coded >> planes_.size() != 0 || (planes_.pairs() && coded != 3)) return false;
@@ -45,10 +47,12 @@ bool TokenReader::read(unsigned first, Bytes& in) {
     if (constant_[p] >= 0 && constant_[p] >> planes_.all()[p].stored != 0) return false;
     if (constant_[p] < 0) list.push_back(p);
   }
+  const auto is_low = [&](std::size_t plane) { return planes_.all()[plane].low; };
+  std::ranges::stable_partition(list, std::not_fn(is_low));
   for (std::size_t at = 0; at < list.size();) {
     const auto bits = [&](std::size_t i) { return planes_.all()[list[at + i]].stored; };
     const std::size_t left = list.size() - at;
-    std::size_t n = std::min<std::size_t>(left, 2);
+    std::size_t n = left >= 2 && is_low(list[at]) == is_low(list[at + 1]) ? 2 : 1;
     if (left >= 3 && bits(0) <= 10 && bits(1) <= 10 && bits(2) <= 10) n = 3;
     Group group;
     for (std::size_t i = 0; i < n; ++i) {
@@ -69,8 +73,8 @@ bool TokenReader::read_group(Group& group, unsigned streams, Bytes& in) const {
   const unsigned head = in.u8();
   group.prediction = head & 3;
   group.follows = (head & 4) != 0;
-  if (head > 7 || group.prediction > 2) return false;
-  if (group.copies && (group.follows || group.prediction == 2)) return false;
+  if (head > 15) return false;
+  if (group.copies && (group.follows || group.prediction > 1)) return false;
   if (group.follows && group.planes.size() == 1) return false;
   for (const std::size_t plane : group.planes) {
     const bool other = planes_.all()[plane].stored != planes_.all()[group.planes[0]].stored;
@@ -90,6 +94,7 @@ bool TokenReader::read_group(Group& group, unsigned streams, Bytes& in) const {
     sum += 1U << (11 - length);
   }
   if (sum != 1U << 11) return false;
+  if ((head & 8) != 0 && !read_map(in, group)) return false;
   std::vector<std::size_t> sizes;
   for (unsigned i = 0; i <= streams; ++i) {
     const auto size = varint(in);
@@ -97,18 +102,52 @@ bool TokenReader::read_group(Group& group, unsigned streams, Bytes& in) const {
     sizes.push_back(*size);
   }
   for (unsigned i = 0; i < streams; ++i) {
-    const std::size_t blocks = blocks_ * (i + 1) / streams - blocks_ * i / streams;
     const auto bytes = in.take(sizes[i]);
-    if (in.failed() || !read_stream(bytes, lengths, blocks * texels_, group.tokens)) return false;
+    if (in.failed() ||
+        !read_stream(bytes, lengths, blocks_ * i / streams, blocks_ * (i + 1) / streams, group)) {
+      return false;
+    }
   }
   const auto raw = in.take(sizes[streams]);
   group.raw.assign(raw.begin(), raw.end());
   return !in.failed();
 }
 
+/// Which units have codes.
+bool TokenReader::read_map(Bytes& in, Group& group) const {
+  const auto size = varint(in);
+  if (!size) return false;
+  const auto bytes = in.take(*size);
+  if (in.failed()) return false;
+  const std::size_t units = blocks_ * units_of_block();
+  std::size_t at = 0;
+  std::vector<unsigned> map;
+  while (map.size() < (units + 7) / 8) {
+    if (at == bytes.size()) return false;
+    const unsigned used = std::to_integer<unsigned>(bytes[at++]);
+    for (unsigned i = 0; i < 8; ++i) {
+      const bool has = (used >> i & 1) != 0;
+      if (map.size() == (units + 7) / 8) {
+        if (has) return false;
+        continue;
+      }
+      if (has && (at == bytes.size() || bytes[at] == std::byte{0})) return false;
+      map.push_back(has ? std::to_integer<unsigned>(bytes[at++]) : 0);
+    }
+  }
+  if (at != bytes.size()) return false;
+  for (std::size_t unit = 0; unit < 8 * map.size(); ++unit) {
+    const bool coded = (map[unit / 8] >> unit % 8 & 1) != 0;
+    if (unit < units) group.coded.push_back(coded);
+    if (unit >= units && coded) return false;
+  }
+  return true;
+}
+
+/// Tokens of blocks from `begin` to before `end`.
 bool TokenReader::read_stream(std::span<const std::byte> bytes,
-                              const std::vector<unsigned>& lengths, std::size_t count,
-                              std::vector<unsigned>& tokens) {
+                              const std::vector<unsigned>& lengths, std::size_t begin,
+                              std::size_t end, Group& group) const {
   std::map<std::pair<unsigned, unsigned>, unsigned> codes;  // by length and code
   unsigned code = 0, before = 1;
   for (unsigned length = 1; length <= 11; ++length) {
@@ -120,14 +159,19 @@ bool TokenReader::read_stream(std::span<const std::byte> bytes,
     }
   }
   std::size_t at = 0;
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = begin * texels_; i < end * texels_; ++i) {
+    const std::size_t unit = i / texels_ * units_of_block() + i % texels_ / 16;
+    if (!group.coded.empty() && !group.coded[unit]) {
+      group.tokens.push_back(0);
+      continue;
+    }
     unsigned read = 0, length = 0;
     do {
       if (length == 11) return false;
       read = read << 1 | bit_of(bytes, at++);
       ++length;
     } while (!codes.contains({length, read}));
-    tokens.push_back(codes.at({length, read}));
+    group.tokens.push_back(codes.at({length, read}));
   }
   return ends_with(bytes, at);
 }
@@ -157,14 +201,26 @@ void TokenReader::read_block(Group& group, const TokenAround& around, Values& va
       for (std::size_t i = 0; i < n; ++i)
         folded[i] = raw_bits(group, width == 16 || i == 0 ? width : width - 1);
     }
-    const bool west = group.prediction == 2 && t % columns_ != 0;
-    const bool north = group.prediction != 0 && !west && t >= columns_;
     for (std::size_t i = 0; i < n; ++i) {
       const int residual = folded[i] % 2 == 0 ? folded[i] / 2 : -(folded[i] + 1) / 2;
-      d[i][t] = (residual + (west ? d[i][t - 1] : north ? d[i][t - columns_] : 0)) & 0xFFFF;
+      const auto north = [&](std::size_t at) {
+        if (at >= columns_) return d[i][at - columns_];
+        if (!continues_ || around.above < 0) return 0;
+        return group.last_row[static_cast<std::size_t>(around.above)][i][at];
+      };
+      int predicted = 0;
+      if (group.prediction == 1 || (group.prediction > 1 && t % columns_ == 0)) {
+        predicted = north(t);
+      } else if (group.prediction > 1) {
+        predicted = d[i][t - 1] + (group.prediction == 3 ? north(t) - north(t - 1) : 0);
+      }
+      d[i][t] = (residual + predicted) & 0xFFFF;
     }
   }
+  Values& last_row = group.last_row.emplace_back(n);
   for (std::size_t i = 0; i < n; ++i) {
+    const auto end = d[i].begin() + rows_ * columns_;
+    last_row[i].assign(end - columns_, end);
     const std::size_t plane = group.planes[i];
     for (std::size_t t = 0; t < texels_; ++t) {
       const int follow = group.follows && i > 0 ? d[0][t] : 0;

@@ -92,6 +92,7 @@ RC_GTEST_PROP(NativeRoundTrip, AnyTextureByTokens, (std::uint64_t seed)) {
     desc.block = {static_cast<std::uint8_t>(test::pick(random, 1, 40)),
                   static_cast<std::uint8_t>(test::pick(random, 1, 9)),
                   static_cast<std::uint8_t>(test::pick(random, 1, 5))};
+    if (test::chance(random, 2)) desc.model = Model::continuous;
   }
   const auto content = test::kContents[random() % std::size(test::kContents)];
   native::PayloadSettings settings;

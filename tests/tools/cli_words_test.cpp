@@ -151,7 +151,7 @@ TEST_F(CliWords, SettingsThatAreRefused) {
   expect_usage({"encode", "-o", "x.gic", "--preset", "slow", "in"},
                {"slow", "turbo, fast or strong"});
   expect_usage({"encode", "-o", "x.gic", "--backend", "lz4", "--level", "99", "in"},
-               {"99", "1 to 12"});
+               {"99", "-64 to 12"});
   expect_usage({"encode", "-o", "x.gic", "--backend", "raw", "--level", "1", "in"}, {"neither"});
   expect_usage({"frobnicate", "in"}, {"frobnicate is no command", "encode", "backends"});
   expect_usage({"preview", dumps_[0], "-o", "x.jpg"}, {"x.jpg", "name it x.png"});

@@ -45,7 +45,9 @@ void add_backend_flags(Command& command, BackendFlags& flags) {
       ->allow(one_of(names))
       ->show_default()
       ->group(group);
-  command.add_option("--level", flags.level, "lz4: 1 to 12; zstd: 1 to 22; 0: the default")
+  command
+      .add_option("--level", flags.level,
+                  "lz4: 1 to 12; zstd: 1 to 22; both -64 to -1, which are faster; 0: the default")
       ->type_name("N")
       ->group(group);
   command
@@ -138,8 +140,8 @@ HevcSettings hevc_settings_of(const BackendFlags& flags, const TextureDesc& desc
 const char* allowed_settings(const std::string& backend) {
   if (backend == "native")
     return "--preset turbo, fast or strong, --chunk 1 to 4096, and no --level";
-  if (backend == "lz4") return "--level 1 to 12, no --preset and no --chunk";
-  if (backend == "zstd") return "--level 1 to 22, no --preset and no --chunk";
+  if (backend == "lz4") return "--level -64 to 12, no --preset and no --chunk";
+  if (backend == "zstd") return "--level -64 to 22, no --preset and no --chunk";
   if (backend == "hevc") {
     return "--preset ultrafast, superfast, veryfast, faster, fast, medium, slow, slower, veryslow "
            "or placebo, no --level and no --chunk";

@@ -22,7 +22,7 @@ void check_backend(const ServerFlags& o, const FeedVolume& volume) {
       fail(Exit::usage,
            "backend {} refuses{}: native takes --preset turbo, fast or strong and --chunk up to "
            "4096, lz4 "
-           "--level 1 to 12, zstd 1 to 22, raw none of them",
+           "--level -64 to 12, zstd -64 to 22, raw none of them",
            o.backend, tools::given_settings(o.server.settings));
     }
   }

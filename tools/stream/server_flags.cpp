@@ -81,7 +81,8 @@ void add_update_flags(tools::Command& app, ServerFlags& o) {
       ->allow(tools::in_range(0, 4096))
       ->show_default()
       ->group(group);
-  app.add_option("--level", o.server.settings.level, "lz4: 1 to 12; zstd: 1 to 22")->group(group);
+  app.add_option("--level", o.server.settings.level, "lz4: -64 to 12; zstd: -64 to 22")
+      ->group(group);
   tools::add_isa(app, o.server.settings.isa);
   app.add_option(
          "--region", o.region,

@@ -375,7 +375,10 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
     done = encode_adaptive(u, positions, texels, raw_size, w.models, out);
     if (by_rows && settings.others) tried(rows);
   } else if (settings.preset == Preset::turbo && takes_tokens(u.desc)) {
-    done = encode_tokens(u, positions, texels, settings.streams, raw_size, w.tokens, out);
+    // Floats of few values are for palettes, which rows have.
+    if (by_rows && u.layout.low != 0) tried(rows);
+    if (!done)
+      done = encode_tokens(u, positions, texels, settings.streams, raw_size, w.tokens, out);
   } else {
     if (by_rows) tried(rows);
     const bool tries = !done || (settings.others && planes_may_pay(u, raw_size));

@@ -140,14 +140,15 @@ void encode(const EncodeJob& job, const PayloadSettings& settings, Isa isa, Payl
   PlaneLayout layout = plane_layout(job.desc);
   const Grid implicit_box = box_of_texture(job.desc, layout);
   const bool adaptive = adapts(job, settings.chunk);
-  const bool rows = !adaptive && settings.chunk.preset != Preset::turbo && takes_rows(job.desc) &&
+  const bool wide = layout.low != 0;
+  const bool rows = !adaptive && (settings.chunk.preset != Preset::turbo || wide) &&
+                    takes_rows(job.desc) &&
                     (job.keyframe || 2 * job.blocks.size() >= block_count(job.desc));
   const Grid box = settings.box.x != 0                       ? settings.box
                    : adaptive                                ? box_of_adaptive(job)
                    : settings.chunk.preset == Preset::strong ? box_of_strong(job.desc, layout)
                    : rows                                    ? box_of_rows(job.desc, implicit_box)
                                                              : implicit_box;
-  const bool wide = layout.low != 0;
   const bool modelled = !adaptive && settings.chunk.preset != Preset::turbo && (!rows || wide);
   if (modelled && settings.chunk.matches_within == 0)
     find_steps(job, kernels(isa), layout, memory.block_values);

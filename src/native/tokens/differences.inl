@@ -1,5 +1,5 @@
-// Differences of a group's planes to their reference, as arrays with a row of zeros before them,
-// and their predictions from the texels at N and W.
+// Differences of a group's planes to their reference, as arrays with a row before them, and their
+// predictions from the texels at N, W and NW.
 
 /// Arrays of the scratch memory, each with a row before it.
 struct Arrays {
@@ -8,10 +8,20 @@ struct Arrays {
   std::uint16_t* operator[](unsigned i) const { return first + i * step; }
 };
 GICODEC_INLINE Arrays arrays_of(const TokenBlock& block) {
-  return {block.scratch + block.width, block.width + block.stride};
+  return {block.scratch + 1 + block.width, block.width + block.stride};
 }
-GICODEC_INLINE void clear_row_before(std::uint16_t* array, unsigned width) {
-  std::memset(array - width, 0, std::size_t{2} * width);
+/// The row of differences that plane `i` continues, or zeros.
+GICODEC_INLINE void set_row_before(const TokenGroup& group, const TokenBlock& block, unsigned i,
+                                   std::uint16_t* array) {
+  std::uint16_t* const row = array - block.width;
+  if (block.before[i] == nullptr) {
+    std::memset(row, 0, std::size_t{2} * block.width);
+    return;
+  }
+  for (unsigned x = 0; x < block.width; ++x) {
+    const unsigned first = i > 0 && group.follows ? block.before[0][x] : 0;
+    row[x] = static_cast<std::uint16_t>(block.before[i][x] - first);
+  }
 }
 
 /// Bits of a plane as a mask.
@@ -24,7 +34,9 @@ GICODEC_INLINE I16 predicted(TokenPrediction prediction, const std::uint16_t* at
   const I16 north = load(at - block.width);
   if (prediction == TokenPrediction::north) return north;
   const I16 inner = load(block.columns + t), west = load(at - 1);
-  return bit_xor(north, bit_and(inner, bit_xor(west, north)));
+  if (prediction == TokenPrediction::west)
+    return bit_xor(north, bit_and(inner, bit_xor(west, north)));
+  return add(north, bit_and(inner, sub(west, load(at - 1 - block.width))));
 }
 
 /// Adds to each row the one above; the compiler knows the width of most.
@@ -52,7 +64,7 @@ GICODEC_INLINE void add_rows(std::uint16_t* at, const std::uint16_t* is_copy,
     }
   }
 }
-/// Sums along rows, each behind what column 0 of the row above has.
+/// Sums along rows.
 GICODEC_INLINE void add_columns(std::uint16_t* at, const TokenBlock& block) {
   const std::uint16_t* inner = block.columns;
   for (unsigned s = 1; s < block.width; s *= 2, inner += block.stride) {
@@ -61,7 +73,10 @@ GICODEC_INLINE void add_columns(std::uint16_t* at, const TokenBlock& block) {
       if (t == 0) break;
     }
   }
-  for (unsigned row = block.width; row < block.texels; row += block.width) {
+}
+/// Adds to each row what column 0 of the row above has.
+GICODEC_INLINE void add_first_column(std::uint16_t* at, const TokenBlock& block) {
+  for (unsigned row = 0; row < block.texels; row += block.width) {
     const std::uint16_t above = *(at + row - block.width);
     for (unsigned x = 0; x < block.width; ++x) {
       at[row + x] = static_cast<std::uint16_t>(at[row + x] + above);

@@ -83,20 +83,22 @@ GICODEC_INLINE void read_group(const TokenGroup& group, const TokenBlock& block,
                                const std::uint8_t* tokens, BitSource& source,
                                std::uint16_t* const* planes) {
   const Arrays array = arrays_of(block);
-  for (unsigned i = 0; i < kPlanes; ++i) clear_row_before(array[i], block.width);
+  for (unsigned i = 0; i < kPlanes; ++i) set_row_before(group, block, i, array[i]);
   read_residuals<kPlanes>(group, block, tokens, source, array);
   const std::uint16_t* const is_copy = array[2 * kPlanes];
   for (unsigned i = 0; i < kPlanes; ++i) {
     std::uint16_t* const at = array[i];
     const std::uint16_t* const copied = array[kPlanes + i];
     const unsigned width = block.width, texels = block.texels;
+    const bool sums = group.prediction >= TokenPrediction::west;
+    if (sums) add_columns(at, block);
     if (group.prediction == TokenPrediction::west) {
-      add_columns(at, block);
+      add_first_column(at, block);
     } else if (group.prediction == TokenPrediction::north && group.copies != 0) {
       width == 16  ? add_rows<16>(at, is_copy, copied, width, texels)
       : width == 8 ? add_rows<8>(at, is_copy, copied, width, texels)
                    : add_rows<0>(at, is_copy, copied, width, texels);
-    } else if (group.prediction == TokenPrediction::north) {
+    } else if (group.prediction != TokenPrediction::none) {
       width == 16  ? add_rows<16>(at, width, texels)
       : width == 8 ? add_rows<8>(at, width, texels)
                    : add_rows<0>(at, width, texels);

@@ -20,28 +20,31 @@ void fill_columns(std::size_t width, std::size_t texels, std::size_t stride,
 
 }  // namespace
 
-TokenBlocks::TokenBlocks(const Update& u, std::span<const std::uint32_t> positions, bool refers,
-                         bool copies, TokenMemory& memory)
+TokenBlocks::TokenBlocks(const Update& u, std::span<const std::uint32_t> positions,
+                         const TokenHead& head, TokenMemory& memory)
     : u_(u),
       positions_(positions),
       memory_(memory),
       layout_(plane_layout(u.desc)),
-      refers_(refers),
-      copies_(copies),
+      refers_(head.refers),
+      continues_(head.continues),
+      copies_(layout_.pairs),
       texels_(u.texels()),
       stride_((u.texels() + kLanes - 1) / kLanes * kLanes) {
   const std::size_t packed = block_stride(layout_.planes, texels_),
                     planes = layout_.planes * stride_;
-  const std::size_t copied = copies ? kCopies * planes : 0;
-  memory.values.resize(packed + 2 * planes + copied + kLanes);
+  const std::size_t copied = copies_ ? kCopies * planes : 0;
+  const std::size_t row = block_stride(layout_.planes, u.width());
+  memory.values.resize(packed + 2 * row + 2 * planes + copied + kLanes);
   packed_ = memory.values.data();
-  current_ = packed_ + packed;
+  before_ = packed_ + packed;
+  current_ = before_ + 2 * row;
   reference_ = current_ + planes;
-  for (unsigned k = 0; k < kCopies; ++k) copy_[k] = reference_ + (copies ? k + 1 : 0) * planes;
+  for (unsigned k = 0; k < kCopies; ++k) copy_[k] = reference_ + (copies_ ? k + 1 : 0) * planes;
   memory.zeros.assign(u.block_bytes(), std::byte{0});
   memory.scratch.resize(token_scratch(u.width(), stride_));
   fill_columns(u.width(), texels_, stride_, memory.columns);
-  if (!refers && !copies) return;
+  if (!refers_ && !continues_ && !copies_) return;
   memory.slots.assign(std::size_t{u.box.x} * u.box.y * u.box.z, kNoBlock);
   for (std::size_t b = 0; b < positions.size(); ++b) {
     const Grid at = place_in_box(u.desc.grid, u.box, u.probes[positions[b]]);
@@ -81,6 +84,25 @@ void TokenBlocks::unpack(const std::byte* records, std::uint16_t* planes) {
   }
 }
 
+/// The last row of the first slice of the block above, if that is one of the chunk.
+void TokenBlocks::load_row_before(std::size_t b, const BlockTable& records) {
+  const std::byte* const above = neighbour(b, kAxisY, records, true);
+  has_before_ = above != nullptr;
+  if (!has_before_) return;
+  const std::size_t width = u_.width();
+  const std::size_t at = (u_.desc.block.y - std::size_t{1}) * width * layout_.texel_bytes;
+  const auto row_of = [&](const std::byte* block, std::uint16_t* out) {
+    u_.kernels.unpack(layout_, reinterpret_cast<const std::uint8_t*>(block + at), width, out);
+  };
+  row_of(above, before_);
+  if (!u_.update) return;
+  std::uint16_t* const past = before_ + block_stride(layout_.planes, width);
+  row_of(u_.mirror.blocks[u_.probes[positions_[b]] - u_.desc.grid.x].data(), past);
+  for (std::size_t i = 0; i < layout_.planes * width; ++i) {
+    before_[i] = static_cast<std::uint16_t>(before_[i] - past[i]);
+  }
+}
+
 void TokenBlocks::load(std::size_t b, const BlockTable& records, bool current) {
   if (current) unpack(records[positions_[b]].data(), current_);
   const std::byte* reference = nullptr;
@@ -92,6 +114,7 @@ void TokenBlocks::load(std::size_t b, const BlockTable& records, bool current) {
     }
   }
   unpack(reference != nullptr ? reference : memory_.zeros.data(), reference_);
+  if (continues_) load_row_before(b, records);
   for (unsigned axis = 0; copies_ && axis < kCopies; ++axis) {
     const std::byte* const beside = neighbour(b, axis, records, false);
     unpack(beside != nullptr ? beside : memory_.zeros.data(), copy_[axis]);
@@ -105,6 +128,7 @@ TokenBlock TokenBlocks::block(const TokenGroup& group) const {
     block.current[i] = current_ + at;
     block.reference[i] = reference_ + at;
     for (unsigned k = 0; k < kCopies; ++k) block.copy[k][i] = copy_[k] + at;
+    block.before[i] = has_before_ ? before_ + group.plane[i] * std::size_t{u_.width()} : nullptr;
   }
   block.columns = memory_.columns.data();
   block.texels = static_cast<unsigned>(texels_);

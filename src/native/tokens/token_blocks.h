@@ -3,6 +3,7 @@
 
 #include "native/frame/workspace.h"
 #include "native/tokens/token_chunk.h"
+#include "native/tokens/token_head.h"
 
 #include <span>
 
@@ -11,8 +12,7 @@ namespace gicodec::native {
 /// Unpacks blocks one at a time, with what they are predicted from.
 class TokenBlocks {
  public:
-  /// `refers`: blocks of a keyframe refer to a neighbour.
-  TokenBlocks(const Update& u, std::span<const std::uint32_t> positions, bool refers, bool copies,
+  TokenBlocks(const Update& u, std::span<const std::uint32_t> positions, const TokenHead& head,
               TokenMemory& memory);
 
   /// Unpacks the block at place `b` of the chunk, or what it refers to alone. `records`: of blocks
@@ -31,14 +31,17 @@ class TokenBlocks {
   [[nodiscard]] const std::byte* neighbour(std::size_t b, unsigned axis, const BlockTable& records,
                                            bool in_chunk_only) const;
   void unpack(const std::byte* records, std::uint16_t* planes);
+  void load_row_before(std::size_t b, const BlockTable& records);
 
   const Update& u_;
   std::span<const std::uint32_t> positions_;
   TokenMemory& memory_;
   PlaneLayout layout_;
-  bool refers_, copies_;
+  bool refers_, continues_, copies_;
   std::size_t texels_, stride_;
   std::uint16_t *packed_, *current_, *reference_;
+  std::uint16_t* before_;  // by plane: differences of the row before the block
+  bool has_before_ = false;
   std::array<std::uint16_t*, kCopies> copy_;
 };
 

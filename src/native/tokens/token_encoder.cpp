@@ -1,5 +1,6 @@
 #include "native/tokens/token_blocks.h"
 #include "native/tokens/token_head.h"
+#include "native/tokens/token_units.h"
 
 #include "native/models/models.h"
 
@@ -15,6 +16,8 @@ constexpr std::size_t kSampledBlocks = 24, kSampledTexels = 4096;
 /// Tokens from which on only every fourth block is counted.
 constexpr std::size_t kManyTokens = 16384;
 constexpr std::uint32_t kCountScale = 4;
+/// A group is sparse from one unit in so many on that needs no codes.
+constexpr std::size_t kQuietWorth = 12;
 
 /// Logarithm to base 2 in 1/256, rounded down between powers of two.
 std::uint64_t log2_of(std::uint64_t n) {
@@ -46,9 +49,8 @@ class TokenEncoder {
         records_(records),
         memory_(memory),
         layout_(plane_layout(u.desc)),
-        blocks_(u, positions, refers(u, layout_), layout_.pairs, memory) {
-    head_.refers = refers(u, layout_);
-  }
+        head_(head_of(u, layout_)),
+        blocks_(u, positions, head_, memory) {}
 
   /// False if the chunk takes more than `most` bytes.
   bool encode(unsigned streams, std::size_t most, std::vector<std::byte>& out) {
@@ -68,8 +70,11 @@ class TokenEncoder {
   }
 
  private:
-  static bool refers(const Update& u, const PlaneLayout& layout) {
-    return !u.update && u.neighbours() && !layout.pairs;
+  static TokenHead head_of(const Update& u, const PlaneLayout& layout) {
+    TokenHead head;
+    head.continues = u.neighbours() && takes_raster(u.desc);
+    head.refers = !u.update && u.neighbours() && !layout.pairs && !head.continues;
+    return head;
   }
   [[nodiscard]] std::size_t texels() const { return blocks_.texels(); }
   [[nodiscard]] std::span<std::uint8_t> tokens_of(unsigned group) const {
@@ -104,31 +109,40 @@ class TokenEncoder {
     return others == 0;
   }
 
+  /// Predictions without differences to the first plane, then those with them.
+  static void set_way(TokenGroup& group, unsigned way, unsigned predictions) {
+    group.prediction = static_cast<TokenPrediction>(way % predictions);
+    group.follows = way >= predictions;
+  }
   void choose_prediction(TokenGroup& group) {
     const std::size_t n = positions_.size();
     const std::size_t sampled =
         std::clamp<std::size_t>(kSampledTexels / texels(), 1, std::min(kSampledBlocks, n));
-    std::array<Counts, kTokenPredictions> counts{};
+    std::array<Counts, 2 * kTokenPredictions> counts{};
     memory_.streams.resize(texels() + kTokenSlack);
     memory_.raw.resize(texels() * kMaxRawBytes + kRawSlack);
-    group.follows = group.can_follow() && layout_.low == 0;
-    const unsigned predictions = group.copies != 0 ? kTokenPredictions - 1 : kTokenPredictions;
+    const bool low = (layout_.low >> group.plane[0] & 1) != 0;
+    const unsigned last = group.can_follow() && !low ? 1 : 0,
+                   first = last == 1 && group.planes == kMaxGroupPlanes ? 1 : 0;
+    const unsigned predictions = group.copies != 0 ? kCopyingPredictions : kTokenPredictions;
     for (std::size_t i = 0; i < sampled; ++i) {
       blocks_.load(n * i / sampled, records_, true);
       const TokenBlock block = blocks_.block(group);
-      for (unsigned p = 0; p < predictions; ++p) {
-        group.prediction = static_cast<TokenPrediction>(p);
+      for (unsigned way = first * predictions; way < (last + 1) * predictions; ++way) {
+        set_way(group, way, predictions);
         BitSink unused{memory_.raw.data(), 0, 0};
         u_.tokens.write(group, block, memory_.streams.data(), unused);
-        for (std::size_t t = 0; t < texels(); ++t) ++counts[p][memory_.streams[t]];
+        for (std::size_t t = 0; t < texels(); ++t) ++counts[way][memory_.streams[t]];
       }
     }
     std::uint64_t least = UINT64_MAX;
-    for (unsigned p = 0; p < predictions; ++p) {
-      const std::uint64_t cost = cost_of(group, counts[p]);
-      if (cost < least) group.prediction = static_cast<TokenPrediction>(p);
+    unsigned best = 0;
+    for (unsigned way = first * predictions; way < (last + 1) * predictions; ++way) {
+      const std::uint64_t cost = cost_of(group, counts[way]);
+      if (cost < least) best = way;
       least = std::min(least, cost);
     }
+    set_way(group, best, predictions);
   }
 
   /// Tokens and raw bits of all blocks. False if a plane turned out not to be constant.
@@ -154,13 +168,12 @@ class TokenEncoder {
     return true;
   }
 
-  [[nodiscard]] Counts count(unsigned g) const {
-    const auto tokens = tokens_of(g).first(positions_.size() * texels());
+  [[nodiscard]] Counts count(std::span<const std::uint8_t> tokens) const {
     const std::size_t step = tokens.size() >= kManyTokens ? 4 : 1;
     std::array<Counts, 4> counts{};  // so that equal tokens in a row do not wait for each other
-    for (std::size_t b = 0; b < positions_.size(); b += step) {
-      const auto block = tokens.subspan(b * texels(), texels());
-      for (std::size_t t = 0; t < block.size(); ++t) ++counts[t % 4][block[t]];
+    for (std::size_t begin = 0; begin < tokens.size(); begin += step * texels()) {
+      const auto some = tokens.subspan(begin, std::min(texels(), tokens.size() - begin));
+      for (std::size_t t = 0; t < some.size(); ++t) ++counts[t % 4][some[t]];
     }
     for (unsigned t = 0; t < kMaxTokens; ++t) {
       counts[0][t] = (counts[0][t] + counts[1][t] + counts[2][t] + counts[3][t]) * kCountScale + 1;
@@ -168,10 +181,35 @@ class TokenEncoder {
     return counts[0];
   }
 
+  /// Takes out units without codes, where that is worth a map. What is left, by stream.
+  std::array<std::span<const std::uint8_t>, kMaxStreams> gather(unsigned g, TokenUnits& units) {
+    TokenGroup& group = groups_.group[g];
+    const std::size_t n = positions_.size();
+    std::uint8_t* const tokens = tokens_of(g).data();
+    const std::size_t quiet = units.count() - units.find(tokens_of(g).first(n * texels()));
+    group.sparse = quiet * kQuietWorth > units.count();
+    std::array<std::span<const std::uint8_t>, kMaxStreams> streams;
+    std::uint8_t* next = tokens;
+    for (unsigned s = 0; s < head_.streams; ++s) {
+      const std::size_t first = first_block(n, s, head_.streams),
+                        last = first_block(n, s + 1, head_.streams);
+      std::uint8_t* const begin = next;
+      for (std::size_t b = first; b < last && group.sparse; ++b) {
+        next = units.gather(b, tokens + b * texels(), next);
+      }
+      if (!group.sparse) next += (last - first) * texels();
+      streams[s] = {begin, next};
+    }
+    return streams;
+  }
+
   void write_group(unsigned g, ByteWriter& writer) {
     const TokenGroup& group = groups_.group[g];
-    const std::size_t n = positions_.size(), all = n * texels();
-    const Counts counts = count(g);
+    TokenUnits units(positions_.size(), texels(), memory_.map[0]);
+    const auto tokens = gather(g, units);
+    const std::size_t all = static_cast<std::size_t>(
+        tokens[head_.streams - 1].data() + tokens[head_.streams - 1].size() - tokens[0].data());
+    const Counts counts = count({tokens[0].data(), all});
     const unsigned most = all >= 65536 ? kMaxLength : all >= 8192 ? 10 : 8;
     const CodeLengths lengths = choose_lengths(std::span(counts).first(group.tokens()), most);
     memory_.writer.set(lengths, group.tokens());
@@ -179,16 +217,15 @@ class TokenEncoder {
     std::array<std::size_t, kMaxStreams> size{};
     std::uint8_t* next = memory_.streams.data();
     for (unsigned s = 0; s < head_.streams; ++s) {
-      const std::size_t first = first_block(n, s, head_.streams) * texels(),
-                        last = first_block(n, s + 1, head_.streams) * texels();
-      std::uint8_t* const stop =
-          memory_.writer.write(tokens_of(g).subspan(first, last - first), next);
+      std::uint8_t* const stop = memory_.writer.write(tokens[s], next);
       size[s] = static_cast<std::size_t>(stop - next);
       next = stop;
     }
     writer.fixed(static_cast<std::uint8_t>(static_cast<unsigned>(group.prediction) |
-                                           (group.follows ? 4U : 0U)));
+                                           (group.follows ? kFollows : 0U) |
+                                           (group.sparse ? kSparse : 0U)));
     write_lengths(lengths, group.tokens(), writer);
+    if (group.sparse) units.write(writer);
     for (unsigned s = 0; s < head_.streams; ++s) writer.varint(size[s]);
     writer.varint(raw_[g].size());
     writer.bytes(std::as_bytes(std::span(memory_.streams.data(), next)));
@@ -200,8 +237,8 @@ class TokenEncoder {
   const BlockTable& records_;
   TokenMemory& memory_;
   PlaneLayout layout_;
-  TokenBlocks blocks_;
   TokenHead head_;
+  TokenBlocks blocks_;
   TokenGroups groups_;
   std::array<std::span<const std::uint8_t>, kMaxGroups> raw_;
 };

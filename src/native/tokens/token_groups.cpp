@@ -26,17 +26,20 @@ TokenGroup group_of(const PlaneLayout& layout, const std::uint8_t* planes, unsig
 TokenGroups token_groups(const PlaneLayout& layout, std::uint32_t coded) noexcept {
   std::array<std::uint8_t, kMaxPlanes> list{};
   unsigned planes = 0;
-  for (unsigned p = 0; p < layout.planes; ++p) {
-    if ((coded >> p & 1) != 0) list[planes++] = static_cast<std::uint8_t>(p);
+  for (const std::uint32_t some : {coded & ~layout.low, coded & layout.low}) {
+    for (unsigned p = 0; p < layout.planes; ++p) {
+      if ((some >> p & 1) != 0) list[planes++] = static_cast<std::uint8_t>(p);
+    }
   }
   TokenGroups groups;
   for (unsigned at = 0; at < planes;) {
+    const auto is_low = [&](unsigned i) { return (layout.low >> list[i] & 1) != 0; };
     const auto narrow = [&](unsigned i) {
       return i < planes && layout.plane[list[i]].stored <= kNarrowBits;
     };
-    const unsigned count = narrow(at) && narrow(at + 1) && narrow(at + 2) ? 3
-                           : at + 1 < planes                              ? 2
-                                                                          : 1;
+    const unsigned count = narrow(at) && narrow(at + 1) && narrow(at + 2)    ? 3
+                           : at + 1 < planes && is_low(at) == is_low(at + 1) ? 2
+                                                                             : 1;
     groups.group[groups.count++] = group_of(layout, list.data() + at, count);
     at += count;
   }

@@ -15,8 +15,11 @@ inline constexpr unsigned kCopies = 3;  ///< of neighbours X, Z, Y
 inline constexpr unsigned kNarrowBits = 10;
 
 /// What the differences of a group to its reference are predicted from.
-enum class TokenPrediction : std::uint8_t { none, north, west };
-inline constexpr unsigned kTokenPredictions = 3;
+/// `gradient`: W + N - NW.
+enum class TokenPrediction : std::uint8_t { none, north, west, gradient };
+inline constexpr unsigned kTokenPredictions = 4;
+/// Of these, groups that copy have so many.
+inline constexpr unsigned kCopyingPredictions = 2;
 
 /// Planes whose residuals at a texel are one token, and raw bits.
 struct TokenGroup {
@@ -26,6 +29,7 @@ struct TokenGroup {
   std::uint8_t copies = 0;  ///< tokens of a neighbour's texel, behind the small ones
   std::uint8_t widest = 0;  ///< bits of the largest residual, doubled where it is no first plane's
   bool follows = false;     ///< later planes' differences are to that of the first one
+  bool sparse = false;      ///< units whose tokens are all 0 are marked, and have no codes
   TokenPrediction prediction = TokenPrediction::none;
 
   /// Whether follows may be set.

@@ -28,6 +28,8 @@ struct TokenBlock {
   const std::uint16_t* current[kMaxGroupPlanes];  ///< decoding writes them
   const std::uint16_t* reference[kMaxGroupPlanes];
   const std::uint16_t* copy[kCopies][kMaxGroupPlanes];  ///< of X, Z, Y; if the group copies
+  /// The row of differences above the first, `width` of them; null: zeros.
+  const std::uint16_t* before[kMaxGroupPlanes];
   /// By texel: all bits set in the first 1, 2, 4, … columns; arrays of `stride`, as many as halve
   /// the width.
   const std::uint16_t* columns;
@@ -35,9 +37,10 @@ struct TokenBlock {
   std::size_t stride;
   std::uint16_t* scratch;  ///< token_scratch() values
 };
-/// Differences, residuals and copies of a group, each with a row before it.
+/// A value that is not used, then differences, residuals and copies of a group, each with a row
+/// before it.
 constexpr std::size_t token_scratch(std::size_t width, std::size_t stride) {
-  return (width + stride) * (3 * kMaxGroupPlanes + 2);
+  return 1 + (width + stride) * (3 * kMaxGroupPlanes + 2);
 }
 
 struct TokenKernels {

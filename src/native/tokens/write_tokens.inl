@@ -44,7 +44,7 @@ GICODEC_INLINE void write_group(const TokenGroup& group, const TokenBlock& block
                                 std::uint8_t* tokens, BitSink& sink) {
   const Arrays difference = arrays_of(block);
   const bool predicts = group.prediction != TokenPrediction::none;
-  for (unsigned i = 0; i < kPlanes; ++i) clear_row_before(difference[i], block.width);
+  for (unsigned i = 0; i < kPlanes; ++i) set_row_before(group, block, i, difference[i]);
   for (unsigned t = 0; t < block.texels; t += kLanes) {
     const I16 first = sub(load(block.current[0] + t), load(block.reference[0] + t));
     store(difference[0] + t, first);
