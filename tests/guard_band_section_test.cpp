@@ -35,7 +35,9 @@ RC_GTEST_PROP(GuardBandSection, WriteAndReadAreInverse, (std::uint64_t seed)) {
     held.add(block, noise(random, band_bytes(desc)));
   }
   mirror.make_room(held);
-  mirror.commit(true, all, noise(random, total * block_bytes(desc)), {}, held);
+  const auto bytes = noise(random, total * block_bytes(desc));
+  Vector<std::byte> records(bytes.begin(), bytes.end());
+  mirror.commit(true, all, records, {}, held);
 
   Blocks update = random_selection(random, total);
   if (update.empty()) update = {pick(random, 0, total - 1)};

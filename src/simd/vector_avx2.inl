@@ -68,6 +68,12 @@ GICODEC_INLINE M16 from_bits(std::uint32_t bits) {
   return m;
 }
 
+/// Words moved up by n lanes within each eight of them; zeros below.
+template <int n>
+GICODEC_INLINE I16 up(I16 a) {
+  GICODEC_EACH16 a.v[i] = _mm256_bslli_epi128(a.v[i], 2 * n);
+  return a;
+}
 GICODEC_INLINE U32 widen(I16 a) {
   U32 r;
   GICODEC_EACH16 {

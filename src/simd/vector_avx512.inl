@@ -38,6 +38,12 @@ GICODEC_INLINE I16 keep(M16 m, I16 a) { return {{_mm512_maskz_mov_epi16(m.bits, 
 GICODEC_INLINE std::uint32_t to_bits(M16 m) { return m.bits; }
 GICODEC_INLINE M16 from_bits(std::uint32_t bits) { return {bits}; }
 
+/// Words moved up by n lanes within each eight of them; zeros below.
+template <int n>
+GICODEC_INLINE I16 up(I16 a) {
+  GICODEC_EACH16 a.v[i] = _mm512_bslli_epi128(a.v[i], 2 * n);
+  return a;
+}
 GICODEC_INLINE U32 widen(I16 a) {
   return {{_mm512_cvtepu16_epi32(_mm512_castsi512_si256(a.v[0])),
            _mm512_cvtepu16_epi32(_mm512_extracti64x4_epi64(a.v[0], 1))}};

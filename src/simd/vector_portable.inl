@@ -107,6 +107,18 @@ GICODEC_INLINE I16 shift_right_all(I16 a, unsigned n) {
   GICODEC_EACH16 a.v[i] = n < 16 ? a.v[i] >> by : Reg16{};
   return a;
 }
+/// Words moved up by n lanes within each eight of them; zeros below.
+template <int n>
+GICODEC_INLINE I16 up(I16 a) {
+  GICODEC_EACH16 {
+    const Reg64 whole = as<Reg64>(a.v[i]);
+    const std::uint64_t carried = n < 4 ? whole[0] >> (64 - 16 * n) % 64 : 0;
+    const std::uint64_t low = n < 4 ? whole[0] << 16 * n % 64 : 0;
+    const std::uint64_t high = n < 4 ? whole[1] << 16 * n % 64 | carried : whole[0];
+    a.v[i] = as<Reg16>(Reg64{low, high});
+  }
+  return a;
+}
 /// High half of the unsigned product. Compilers recognise the loop.
 GICODEC_INLINE I16 mul_high(I16 a, I16 b) {
   alignas(16) std::uint16_t x[kLanes], y[kLanes];

@@ -43,7 +43,7 @@ void Mirror::make_room(const StaleBands& stale) {
 }
 
 void Mirror::commit(bool keyframe, std::span<const std::uint32_t> blocks,
-                    std::span<const std::byte> records, std::span<const std::byte> presence,
+                    Vector<std::byte>& records, std::span<const std::byte> presence,
                     const StaleBands& stale, const CheckedView<std::byte>* view) noexcept {
   const bool clears = keyframe && blocks.size() < received_.size();
   if (clears) {
@@ -59,12 +59,18 @@ void Mirror::commit(bool keyframe, std::span<const std::uint32_t> blocks,
     std::memcpy(bands_.data() + block * band_bytes_, stale.band(i).data(), band_bytes_);
     stale_[block] = 1;
   }
+  // Memory that other textures share may be larger than what a mirror may hold.
+  const bool exchanges =
+      blocks.size() == received_.size() && records.capacity() == records_.capacity();
+  if (exchanges) records_.swap(records);
   const auto commit_range = [&](unsigned, std::size_t first, std::size_t size) {
     const auto some = blocks.subspan(first, size);
     for_each_run(some, [&](std::size_t place, std::size_t count) {
       const std::size_t block = some[place];
-      std::memcpy(records_.data() + block * block_bytes_,
-                  records.data() + (first + place) * block_bytes_, count * block_bytes_);
+      if (!exchanges) {
+        std::memcpy(records_.data() + block * block_bytes_,
+                    records.data() + (first + place) * block_bytes_, count * block_bytes_);
+      }
       if (presence_bytes_ != 0) {
         std::memcpy(presence_.data() + block * presence_bytes_,
                     presence.data() + (first + place) * presence_bytes_, count * presence_bytes_);

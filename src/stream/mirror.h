@@ -36,12 +36,13 @@ class Mirror {
 
   /// Allocates memory for irregular bands, if any. Throws bad_alloc; then nothing has changed.
   void make_room(const StaleBands& stale);
-  /// Replaces some blocks. `presence`: theirs, unless it is Presence::all. `stale`: their irregular
-  /// bands. In a keyframe every other block becomes zero and not received. Then writes blocks that
-  /// may have changed to `view`, unless it is null. Cannot fail after make_room().
-  void commit(bool keyframe, std::span<const std::uint32_t> blocks,
-              std::span<const std::byte> records, std::span<const std::byte> presence,
-              const StaleBands& stale, const CheckedView<std::byte>* view = nullptr) noexcept;
+  /// Replaces some blocks. `records`: theirs, which are lost: those of all blocks are not copied
+  /// but exchanged. `presence`: theirs, unless it is Presence::all. `stale`: their irregular bands.
+  /// In a keyframe every other block becomes zero and not received. Then writes blocks that may
+  /// have changed to `view`, unless it is null. Cannot fail after make_room().
+  void commit(bool keyframe, std::span<const std::uint32_t> blocks, Vector<std::byte>& records,
+              std::span<const std::byte> presence, const StaleBands& stale,
+              const CheckedView<std::byte>* view = nullptr) noexcept;
 
   /// Writes block blocks[i] to the place of block places[i] in a texture `to` with blocks of the
   /// same record and shape. Both lists have the same length. Cannot fail.

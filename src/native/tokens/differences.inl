@@ -41,7 +41,7 @@ GICODEC_INLINE I16 predicted(TokenPrediction prediction, const std::uint16_t* at
 
 /// Adds to each row the one above; the compiler knows the width of most.
 template <unsigned kWidth>
-GICODEC_INLINE void add_rows(std::uint16_t* at, unsigned width, unsigned texels) {
+GICODEC_INLINE void add_rows_of(std::uint16_t* at, unsigned width, unsigned texels) {
   const unsigned w = kWidth != 0 ? kWidth : width;
   for (unsigned row = 0; row < texels; row += w) {
     std::uint16_t* const here = at + row;
@@ -52,8 +52,8 @@ GICODEC_INLINE void add_rows(std::uint16_t* at, unsigned width, unsigned texels)
 }
 /// The same, but for texels that are copies, which have differences of their own.
 template <unsigned kWidth>
-GICODEC_INLINE void add_rows(std::uint16_t* at, const std::uint16_t* is_copy,
-                             const std::uint16_t* copied, unsigned width, unsigned texels) {
+GICODEC_INLINE void add_rows_of(std::uint16_t* at, const std::uint16_t* is_copy,
+                                const std::uint16_t* copied, unsigned width, unsigned texels) {
   const unsigned w = kWidth != 0 ? kWidth : width;
   for (unsigned row = 0; row < texels; row += w) {
     std::uint16_t* const here = at + row;
@@ -64,22 +64,47 @@ GICODEC_INLINE void add_rows(std::uint16_t* at, const std::uint16_t* is_copy,
     }
   }
 }
+GICODEC_INLINE void add_rows(std::uint16_t* at, const TokenBlock& block) {
+  block.width == 16  ? add_rows_of<16>(at, block.width, block.texels)
+  : block.width == 8 ? add_rows_of<8>(at, block.width, block.texels)
+                     : add_rows_of<0>(at, block.width, block.texels);
+}
+GICODEC_INLINE void add_rows(std::uint16_t* at, const std::uint16_t* is_copy,
+                             const std::uint16_t* copied, const TokenBlock& block) {
+  block.width == 16  ? add_rows_of<16>(at, is_copy, copied, block.width, block.texels)
+  : block.width == 8 ? add_rows_of<8>(at, is_copy, copied, block.width, block.texels)
+                     : add_rows_of<0>(at, is_copy, copied, block.width, block.texels);
+}
+GICODEC_INLINE void copy_texels(std::uint16_t* at, const std::uint16_t* is_copy,
+                                const std::uint16_t* copied, const TokenBlock& block) {
+  for (unsigned t = 0; t < block.texels; t += kLanes) {
+    const I16 mask = load(is_copy + t), own = load(at + t);
+    store(at + t, bit_xor(own, bit_and(mask, bit_xor(own, load(copied + t)))));
+  }
+}
+/// Sums down column 0.
+GICODEC_INLINE void add_first_column(std::uint16_t* at, const TokenBlock& block) {
+  std::uint16_t above = *(at - block.width);
+  for (unsigned row = 0; row < block.texels; row += block.width) {
+    above = at[row] = static_cast<std::uint16_t>(at[row] + above);
+  }
+}
 /// Sums along rows.
 GICODEC_INLINE void add_columns(std::uint16_t* at, const TokenBlock& block) {
+  if (block.width == 8) {
+    for (unsigned t = 0; t < block.texels; t += kLanes) {
+      I16 row = load(at + t);
+      row = add(row, up<1>(row));
+      row = add(row, up<2>(row));
+      store(at + t, add(row, up<4>(row)));
+    }
+    return;
+  }
   const std::uint16_t* inner = block.columns;
   for (unsigned s = 1; s < block.width; s *= 2, inner += block.stride) {
     for (unsigned t = (block.texels - 1) / kLanes * kLanes;; t -= kLanes) {
       store(at + t, add(load(at + t), bit_and(load(at + t - s), load(inner + t))));
       if (t == 0) break;
-    }
-  }
-}
-/// Adds to each row what column 0 of the row above has.
-GICODEC_INLINE void add_first_column(std::uint16_t* at, const TokenBlock& block) {
-  for (unsigned row = 0; row < block.texels; row += block.width) {
-    const std::uint16_t above = *(at + row - block.width);
-    for (unsigned x = 0; x < block.width; ++x) {
-      at[row + x] = static_cast<std::uint16_t>(at[row + x] + above);
     }
   }
 }

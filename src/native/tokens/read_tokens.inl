@@ -89,24 +89,21 @@ GICODEC_INLINE void read_group(const TokenGroup& group, const TokenBlock& block,
   for (unsigned i = 0; i < kPlanes; ++i) {
     std::uint16_t* const at = array[i];
     const std::uint16_t* const copied = array[kPlanes + i];
-    const unsigned width = block.width, texels = block.texels;
-    const bool sums = group.prediction >= TokenPrediction::west;
-    if (sums) add_columns(at, block);
-    if (group.prediction == TokenPrediction::west) {
-      add_first_column(at, block);
-    } else if (group.prediction == TokenPrediction::north && group.copies != 0) {
-      width == 16  ? add_rows<16>(at, is_copy, copied, width, texels)
-      : width == 8 ? add_rows<8>(at, is_copy, copied, width, texels)
-                   : add_rows<0>(at, is_copy, copied, width, texels);
-    } else if (group.prediction != TokenPrediction::none) {
-      width == 16  ? add_rows<16>(at, width, texels)
-      : width == 8 ? add_rows<8>(at, width, texels)
-                   : add_rows<0>(at, width, texels);
-    } else if (group.copies != 0) {
-      for (unsigned t = 0; t < texels; t += kLanes) {
-        const I16 mask = load(is_copy + t), own = load(at + t);
-        store(at + t, bit_xor(own, bit_and(mask, bit_xor(own, load(copied + t)))));
-      }
+    switch (group.prediction) {
+      case TokenPrediction::none:
+        if (group.copies != 0) copy_texels(at, is_copy, copied, block);
+        break;
+      case TokenPrediction::north:
+        group.copies != 0 ? add_rows(at, is_copy, copied, block) : add_rows(at, block);
+        break;
+      case TokenPrediction::west:  // what column 0 has, the sums along rows bring to all others
+        add_first_column(at, block);
+        add_columns(at, block);
+        break;
+      case TokenPrediction::gradient:
+        add_columns(at, block);
+        add_rows(at, block);
+        break;
     }
   }
   for (unsigned t = 0; t < block.texels; t += kLanes) {

@@ -30,18 +30,22 @@ TokenBlocks::TokenBlocks(const Update& u, std::span<const std::uint32_t> positio
       continues_(head.continues),
       copies_(layout_.pairs),
       texels_(u.texels()),
-      stride_((u.texels() + kLanes - 1) / kLanes * kLanes) {
-  const std::size_t packed = block_stride(layout_.planes, texels_),
-                    planes = layout_.planes * stride_;
-  const std::size_t copied = copies_ ? kCopies * planes : 0;
+      stride_((u.texels() + kLanes - 1) / kLanes * kLanes),
+      size_(layout_.planes * stride_),
+      slots_(kept(positions.size())) {
+  const std::size_t packed = block_stride(layout_.planes, texels_);
   const std::size_t row = block_stride(layout_.planes, u.width());
-  memory.values.resize(packed + 2 * row + 2 * planes + copied + kLanes);
+  constexpr std::size_t kRooms = 1 + kCopies;  // of the reference, and of neighbours
+  memory.values.resize(packed + 2 * row + (1 + kRooms + slots_) * size_ + kLanes);
   packed_ = memory.values.data();
   before_ = packed_ + packed;
-  current_ = before_ + 2 * row;
-  reference_ = current_ + planes;
-  for (unsigned k = 0; k < kCopies; ++k) copy_[k] = reference_ + (copies_ ? k + 1 : 0) * planes;
-  memory.zeros.assign(u.block_bytes(), std::byte{0});
+  zeros_ = before_ + 2 * row;
+  room_ = zeros_ + size_;
+  ring_ = room_ + kRooms * size_;
+  current_ = ring_;
+  reference_ = zeros_;
+  std::fill_n(zeros_, size_, std::uint16_t{0});
+  memory.held.assign(slots_, SIZE_MAX);
   memory.scratch.resize(token_scratch(u.width(), stride_));
   fill_columns(u.width(), texels_, stride_, memory.columns);
   if (!refers_ && !continues_ && !copies_) return;
@@ -52,26 +56,47 @@ TokenBlocks::TokenBlocks(const Update& u, std::span<const std::uint32_t> positio
   }
 }
 
-/// Records of the neighbour on an axis within the box: new ones, or those of the mirror; null if
-/// it is not known.
-const std::byte* TokenBlocks::neighbour(std::size_t b, unsigned axis, const BlockTable& records,
-                                        bool in_chunk_only) const {
-  if (!u_.neighbours()) return nullptr;
+/// Places of the box from a block to its neighbour.
+std::size_t TokenBlocks::step(unsigned axis) const {
+  return axis == kAxisX ? 1 : axis == kAxisY ? u_.box.x : std::size_t{u_.box.x} * u_.box.y;
+}
+
+/// Blocks to keep of so many: as far back as the farthest neighbour may be.
+std::size_t TokenBlocks::kept(std::size_t blocks) const {
+  if (!refers_ && !continues_ && !copies_) return 1;
+  const bool rows_alone = !refers_ && !copies_;
+  return std::min(blocks, 1 + step(u_.box.z > 1 && !rows_alone ? kAxisZ : kAxisY));
+}
+
+/// Where in the chunk the loaded block's neighbour is; kNoBlock if it is none of its blocks.
+std::int32_t TokenBlocks::place_of(unsigned axis) const {
+  const std::uint32_t coordinate = axis == kAxisX ? at_.x : axis == kAxisY ? at_.y : at_.z;
+  if (coordinate == 0 || !u_.neighbours()) return kNoBlock;
+  return memory_.slots[slot_of(u_.box, at_) - step(axis)];
+}
+
+/// Planes of a block of the chunk: those that are kept, or in `room`.
+const std::uint16_t* TokenBlocks::values(std::size_t place, const BlockTable& records,
+                                         std::uint16_t* room) {
+  if (memory_.held[place % slots_] == place) return slot(place);
+  unpack(records[positions_[place]].data(), room);
+  return room;
+}
+
+/// Planes of a neighbour: new ones, or those of the mirror; zeros if it is not known.
+const std::uint16_t* TokenBlocks::copied(std::size_t b, unsigned axis, const BlockTable& records) {
+  std::uint16_t* const room = room_ + (1 + axis) * size_;
+  const std::int32_t place = place_of(axis);
+  if (place != kNoBlock) return values(static_cast<std::size_t>(place), records, room);
+  const std::uint32_t coordinate = axis == kAxisX ? at_.x : axis == kAxisY ? at_.y : at_.z;
+  if (coordinate == 0 || !u_.neighbours() || !u_.mirrored) return zeros_;
   const Grid& grid = u_.desc.grid;
-  const std::uint32_t block = u_.probes[positions_[b]];
-  const Grid at = place_in_box(grid, u_.box, block);
-  const std::uint32_t coordinate = axis == kAxisX ? at.x : axis == kAxisY ? at.y : at.z;
-  if (coordinate == 0) return nullptr;
-  const std::size_t step = axis == kAxisX   ? 1
-                           : axis == kAxisY ? u_.box.x
-                                            : std::size_t{u_.box.x} * u_.box.y;
-  const std::int32_t slot = memory_.slots[slot_of(u_.box, at) - step];
-  if (slot != kNoBlock) return records[positions_[static_cast<std::size_t>(slot)]].data();
-  const std::uint32_t beside = block - (axis == kAxisX   ? 1
-                                        : axis == kAxisY ? grid.x
-                                                         : grid.x * grid.y);
-  if (in_chunk_only || !u_.mirrored || !u_.mirror.is_received(beside)) return nullptr;
-  return u_.mirror.blocks[beside].data();
+  const std::uint32_t beside = u_.probes[positions_[b]] - (axis == kAxisX   ? 1
+                                                           : axis == kAxisY ? grid.x
+                                                                            : grid.x * grid.y);
+  if (!u_.mirror.is_received(beside)) return zeros_;
+  unpack(u_.mirror.blocks[beside].data(), room);
+  return room;
 }
 
 /// Planes at strides of whole vectors.
@@ -84,50 +109,56 @@ void TokenBlocks::unpack(const std::byte* records, std::uint16_t* planes) {
   }
 }
 
-/// The last row of the first slice of the block above, if that is one of the chunk.
+/// Differences of the last row of the first slice of the block above, if that is one of the chunk.
 void TokenBlocks::load_row_before(std::size_t b, const BlockTable& records) {
-  const std::byte* const above = neighbour(b, kAxisY, records, true);
-  has_before_ = above != nullptr;
+  const std::int32_t above = place_of(kAxisY);
+  has_before_ = above != kNoBlock;
   if (!has_before_) return;
-  const std::size_t width = u_.width();
-  const std::size_t at = (u_.desc.block.y - std::size_t{1}) * width * layout_.texel_bytes;
-  const auto row_of = [&](const std::byte* block, std::uint16_t* out) {
-    u_.kernels.unpack(layout_, reinterpret_cast<const std::uint8_t*>(block + at), width, out);
-  };
-  row_of(above, before_);
+  const std::size_t width = u_.width(), first = (u_.desc.block.y - std::size_t{1}) * width;
+  const std::uint16_t* const planes =
+      values(static_cast<std::size_t>(above), records, room_ + size_);
+  for (unsigned p = 0; p < layout_.planes; ++p) {
+    std::copy_n(planes + p * stride_ + first, width, before_ + p * width);
+  }
   if (!u_.update) return;
   std::uint16_t* const past = before_ + block_stride(layout_.planes, width);
-  row_of(u_.mirror.blocks[u_.probes[positions_[b]] - u_.desc.grid.x].data(), past);
+  const std::byte* const mirror =
+      u_.mirror.blocks[u_.probes[positions_[b]] - u_.desc.grid.x].data();
+  u_.kernels.unpack(layout_,
+                    reinterpret_cast<const std::uint8_t*>(mirror + first * layout_.texel_bytes),
+                    width, past);
   for (std::size_t i = 0; i < layout_.planes * width; ++i) {
     before_[i] = static_cast<std::uint16_t>(before_[i] - past[i]);
   }
 }
 
 void TokenBlocks::load(std::size_t b, const BlockTable& records, bool current) {
+  current_ = slot(b);
+  memory_.held[b % slots_] = b;
+  if (refers_ || continues_ || copies_)
+    at_ = place_in_box(u_.desc.grid, u_.box, u_.probes[positions_[b]]);
   if (current) unpack(records[positions_[b]].data(), current_);
-  const std::byte* reference = nullptr;
   if (u_.update) {
-    reference = u_.mirror.blocks[u_.probes[positions_[b]]].data();
+    unpack(u_.mirror.blocks[u_.probes[positions_[b]]].data(), room_);
+    reference_ = room_;
   } else if (refers_) {
-    for (const unsigned axis : {kAxisZ, kAxisY, kAxisX}) {
-      if (reference == nullptr) reference = neighbour(b, axis, records, true);
+    reference_ = zeros_;
+    for (const unsigned axis : {kAxisX, kAxisY, kAxisZ}) {
+      const std::int32_t place = place_of(axis);
+      if (place != kNoBlock) reference_ = values(static_cast<std::size_t>(place), records, room_);
     }
   }
-  unpack(reference != nullptr ? reference : memory_.zeros.data(), reference_);
   if (continues_) load_row_before(b, records);
-  for (unsigned axis = 0; copies_ && axis < kCopies; ++axis) {
-    const std::byte* const beside = neighbour(b, axis, records, false);
-    unpack(beside != nullptr ? beside : memory_.zeros.data(), copy_[axis]);
-  }
+  for (unsigned axis = 0; copies_ && axis < kCopies; ++axis) copy_[axis] = copied(b, axis, records);
 }
 
 TokenBlock TokenBlocks::block(const TokenGroup& group) const {
-  TokenBlock block{};
+  TokenBlock block;
   for (unsigned i = 0; i < group.planes; ++i) {
     const std::size_t at = group.plane[i] * stride_;
     block.current[i] = current_ + at;
     block.reference[i] = reference_ + at;
-    for (unsigned k = 0; k < kCopies; ++k) block.copy[k][i] = copy_[k] + at;
+    for (unsigned k = 0; copies_ && k < kCopies; ++k) block.copy[k][i] = copy_[k] + at;
     block.before[i] = has_before_ ? before_ + group.plane[i] * std::size_t{u_.width()} : nullptr;
   }
   block.columns = memory_.columns.data();
@@ -136,6 +167,10 @@ TokenBlock TokenBlocks::block(const TokenGroup& group) const {
   block.stride = stride_;
   block.scratch = memory_.scratch.data();
   return block;
+}
+
+void TokenBlocks::fill(unsigned p, std::uint16_t value) {
+  for (std::size_t s = 0; s < slots_; ++s) std::fill_n(slot(s) + p * stride_, texels_, value);
 }
 
 void TokenBlocks::store(std::byte* out) {

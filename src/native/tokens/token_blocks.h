@@ -9,7 +9,8 @@
 
 namespace gicodec::native {
 
-/// Unpacks blocks one at a time, with what they are predicted from.
+/// Unpacks blocks one at a time, with what they are predicted from. Keeps the planes of those that
+/// later ones refer to.
 class TokenBlocks {
  public:
   TokenBlocks(const Update& u, std::span<const std::uint32_t> positions, const TokenHead& head,
@@ -21,6 +22,8 @@ class TokenBlocks {
   /// Planes of a group in the loaded block.
   [[nodiscard]] TokenBlock block(const TokenGroup& group) const;
   [[nodiscard]] std::uint16_t* plane(unsigned p) const { return current_ + p * stride_; }
+  /// Sets a plane that is not coded, of all blocks to come.
+  void fill(unsigned p, std::uint16_t value);
   [[nodiscard]] const PlaneLayout& layout() const { return layout_; }
   [[nodiscard]] std::size_t texels() const { return texels_; }
   /// Packs the planes, constants among them, as records.
@@ -28,8 +31,14 @@ class TokenBlocks {
 
  private:
   enum Axis : unsigned { kAxisX, kAxisZ, kAxisY };  // in the order of copies
-  [[nodiscard]] const std::byte* neighbour(std::size_t b, unsigned axis, const BlockTable& records,
-                                           bool in_chunk_only) const;
+  [[nodiscard]] std::size_t step(unsigned axis) const;
+  [[nodiscard]] std::size_t kept(std::size_t blocks) const;
+  [[nodiscard]] std::int32_t place_of(unsigned axis) const;
+  [[nodiscard]] std::uint16_t* slot(std::size_t place) const {
+    return ring_ + place % slots_ * size_;
+  }
+  const std::uint16_t* values(std::size_t place, const BlockTable& records, std::uint16_t* room);
+  const std::uint16_t* copied(std::size_t b, unsigned axis, const BlockTable& records);
   void unpack(const std::byte* records, std::uint16_t* planes);
   void load_row_before(std::size_t b, const BlockTable& records);
 
@@ -38,11 +47,14 @@ class TokenBlocks {
   TokenMemory& memory_;
   PlaneLayout layout_;
   bool refers_, continues_, copies_;
-  std::size_t texels_, stride_;
-  std::uint16_t *packed_, *current_, *reference_;
-  std::uint16_t* before_;  // by plane: differences of the row before the block
+  std::size_t texels_, stride_, size_;  // of a plane, and of all of a block
+  std::size_t slots_;                   // blocks that are kept: place b is slot b modulo these
+  Grid at_{};                           // of the loaded block in the box
+  std::uint16_t *packed_, *before_, *zeros_, *room_, *ring_;
+  std::uint16_t* current_;
+  const std::uint16_t* reference_;
+  std::array<const std::uint16_t*, kCopies> copy_{};
   bool has_before_ = false;
-  std::array<std::uint16_t*, kCopies> copy_;
 };
 
 }  // namespace gicodec::native

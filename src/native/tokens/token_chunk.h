@@ -23,7 +23,7 @@ struct TokenMemory {
   CodeReader reader;
   Vector<std::uint16_t> values;  ///< planes of blocks, one after the other
   Vector<std::uint16_t> columns, scratch;
-  Vector<std::byte> zeros;           ///< a block
+  Vector<std::size_t> held;          ///< places of the blocks whose planes are kept
   Vector<std::int32_t> slots;        ///< of every place of the box: the block of the chunk
   Vector<std::uint8_t> tokens;       ///< of all groups
   Vector<std::uint8_t> unit_tokens;  ///< of a block

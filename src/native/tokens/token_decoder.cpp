@@ -103,7 +103,7 @@ Status decode_tokens(const Update& u, std::span<const std::uint32_t> positions, 
   for (unsigned g = 0; g < groups.count; ++g)
     sources[g].raw.bytes = memory.raw.data() + sources[g].raw_at;
   for (unsigned p = 0; p < layout.planes; ++p) {
-    if ((head.coded >> p & 1) == 0) std::fill_n(blocks.plane(p), texels, head.constant[p]);
+    if ((head.coded >> p & 1) == 0) blocks.fill(p, head.constant[p]);
   }
   const BlockTable known{records.data(), u.block_bytes()};
   for (unsigned s = 0; s < head.streams; ++s) {

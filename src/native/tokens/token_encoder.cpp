@@ -16,14 +16,17 @@ constexpr std::size_t kSampledBlocks = 24, kSampledTexels = 4096;
 /// Tokens from which on only every fourth block is counted.
 constexpr std::size_t kManyTokens = 16384;
 constexpr std::uint32_t kCountScale = 4;
-/// A group is sparse from one unit in so many on that needs no codes.
-constexpr std::size_t kQuietWorth = 12;
 
 /// Logarithm to base 2 in 1/256, rounded down between powers of two.
 std::uint64_t log2_of(std::uint64_t n) {
   const auto whole = static_cast<unsigned>(std::bit_width(n)) - 1;
   const std::uint64_t rest = whole > 8 ? n >> (whole - 8) : n << (8 - whole);
   return whole * 256U + (rest - 256);
+}
+
+/// Never less, so that what is overwritten is not set to zeros first.
+void grow(Vector<std::uint8_t>& memory, std::size_t size) {
+  if (memory.size() < size) memory.resize(size);
 }
 
 using Counts = std::array<std::uint32_t, kMaxTokens>;
@@ -119,8 +122,8 @@ class TokenEncoder {
     const std::size_t sampled =
         std::clamp<std::size_t>(kSampledTexels / texels(), 1, std::min(kSampledBlocks, n));
     std::array<Counts, 2 * kTokenPredictions> counts{};
-    memory_.streams.resize(texels() + kTokenSlack);
-    memory_.raw.resize(texels() * kMaxRawBytes + kRawSlack);
+    grow(memory_.streams, texels() + kTokenSlack);
+    grow(memory_.raw, texels() * kMaxRawBytes + kRawSlack);
     const bool low = (layout_.low >> group.plane[0] & 1) != 0;
     const unsigned last = group.can_follow() && !low ? 1 : 0,
                    first = last == 1 && group.planes == kMaxGroupPlanes ? 1 : 0;
@@ -148,9 +151,9 @@ class TokenEncoder {
   /// Tokens and raw bits of all blocks. False if a plane turned out not to be constant.
   bool make_tokens() {
     const std::size_t n = positions_.size();
-    memory_.tokens.resize(groups_.count * (n * texels() + kTokenSlack));
+    grow(memory_.tokens, groups_.count * (n * texels() + kTokenSlack));
     const std::size_t most = n * texels() * kMaxRawBytes + kRawSlack;
-    memory_.raw.resize(groups_.count * most);
+    grow(memory_.raw, groups_.count * most);
     std::array<BitSink, kMaxGroups> sinks{};
     for (unsigned g = 0; g < groups_.count; ++g) sinks[g].next = memory_.raw.data() + g * most;
     for (std::size_t b = 0; b < n; ++b) {
@@ -186,8 +189,8 @@ class TokenEncoder {
     TokenGroup& group = groups_.group[g];
     const std::size_t n = positions_.size();
     std::uint8_t* const tokens = tokens_of(g).data();
-    const std::size_t quiet = units.count() - units.find(tokens_of(g).first(n * texels()));
-    group.sparse = quiet * kQuietWorth > units.count();
+    group.sparse = units.quiet(tokens_of(g).first(n * texels()));
+    if (group.sparse) units.find(tokens_of(g).first(n * texels()));
     std::array<std::span<const std::uint8_t>, kMaxStreams> streams;
     std::uint8_t* next = tokens;
     for (unsigned s = 0; s < head_.streams; ++s) {
@@ -213,7 +216,7 @@ class TokenEncoder {
     const unsigned most = all >= 65536 ? kMaxLength : all >= 8192 ? 10 : 8;
     const CodeLengths lengths = choose_lengths(std::span(counts).first(group.tokens()), most);
     memory_.writer.set(lengths, group.tokens());
-    memory_.streams.resize(CodeWriter::bound(all) + head_.streams * 16);
+    grow(memory_.streams, CodeWriter::bound(all) + head_.streams * 16);
     std::array<std::size_t, kMaxStreams> size{};
     std::uint8_t* next = memory_.streams.data();
     for (unsigned s = 0; s < head_.streams; ++s) {

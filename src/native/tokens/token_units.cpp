@@ -18,17 +18,28 @@ bool is_zero(const std::uint8_t* tokens, std::size_t size) noexcept {
 
 }  // namespace
 
-std::size_t TokenUnits::find(std::span<const std::uint8_t> tokens) {
+bool TokenUnits::quiet(std::span<const std::uint8_t> tokens) const noexcept {
+  constexpr std::size_t kWorth = 6;  // a unit without codes in so many is worth the time of a map
+  constexpr std::size_t kSampled = 64;
+  const std::size_t blocks = tokens.size() / texels_, step = blocks / kSampled | 1;
+  std::size_t seen = 0, found = 0;
+  for (std::size_t block = 0; block < blocks; block += step) {
+    for (std::size_t u = 0; u < units_; ++u, ++seen) {
+      found += is_zero(&tokens[block * texels_ + u * kUnit], size_of(u)) ? 1 : 0;
+    }
+  }
+  return found * kWorth > seen;
+}
+
+void TokenUnits::find(std::span<const std::uint8_t> tokens) {
   map_.assign((count_ + 7) / 8, 0);
-  std::size_t coded = 0, unit = 0;
+  std::size_t unit = 0;
   for (std::size_t begin = 0; unit < count_; begin += texels_) {
     for (std::size_t u = 0; u < units_; ++u, ++unit) {
       if (is_zero(&tokens[begin + u * kUnit], size_of(u))) continue;
       map_[unit / 8] = static_cast<std::uint8_t>(map_[unit / 8] | 1U << unit % 8);
-      ++coded;
     }
   }
-  return coded;
 }
 
 std::size_t TokenUnits::coded(std::size_t first, std::size_t last) const noexcept {

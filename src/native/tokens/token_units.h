@@ -20,9 +20,10 @@ class TokenUnits {
   TokenUnits(std::size_t blocks, std::size_t texels, Vector<std::uint8_t>& map) noexcept
       : texels_(texels), units_((texels + kUnit - 1) / kUnit), count_(blocks * units_), map_(map) {}
 
-  /// Finds the units of these tokens, block behind block, that are not all 0. Returns their number.
-  std::size_t find(std::span<const std::uint8_t> tokens);
-  [[nodiscard]] std::size_t count() const noexcept { return count_; }
+  /// Whether a sample of these tokens, block behind block, has enough units without codes.
+  [[nodiscard]] bool quiet(std::span<const std::uint8_t> tokens) const noexcept;
+  /// Finds the units that are coded.
+  void find(std::span<const std::uint8_t> tokens);
   /// Tokens that are coded of blocks from `first` to before `last`.
   [[nodiscard]] std::size_t coded(std::size_t first, std::size_t last) const noexcept;
   /// Moves the tokens of a block that are coded to `out`. Returns where they end.
