@@ -69,7 +69,7 @@ TEST(Engines, NamesOccurOnceAndAreFound) {
     EXPECT_FALSE(row.summary.empty());
     EXPECT_LE(row.summary.size(), 60U) << row.name;
   }
-  EXPECT_GE(names.size(), 13U);
+  EXPECT_GE(names.size(), 15U);
   EXPECT_EQ(find_engine_layout("unknown"), nullptr);
   EXPECT_EQ(find_engine_layout(""), nullptr);
 }
@@ -150,6 +150,7 @@ TEST(Engines, RefuseGridsThatAreNone) {
             Status::unsupported_format);
   options = {.irradiance = Format::UNDEFINED};
   EXPECT_EQ(rtxgi_volume({2, 2, 2}, options).status(), Status::unsupported_format);
+  EXPECT_EQ(three_volume({4, 4, 1}, Format::UNDEFINED).status(), Status::unsupported_format);
   EXPECT_EQ(godot_lightmap_volume({4, 4, 1}, {.format = Format::UNDEFINED}).status(),
             Status::unsupported_format);
 }
@@ -247,6 +248,7 @@ TEST(Engines, BricksFillTheirTexturesAsTheEnginesDo) {
   EXPECT_EQ(extent_of(unreal_lightmap_volume({3, 2, 1}, 257), 0), (Extent{1280, 10, 5}));
   EXPECT_EQ(extent_of(unreal_lightmap_volume({3, 2, 1}, 257), 1), (Extent{3, 2, 1}));
   EXPECT_EQ(extent_of(bevy_volume({7, 5, 3}), 0), (Extent{7, 10, 9}));
+  EXPECT_EQ(extent_of(three_volume({7, 5, 3}), 0), (Extent{7, 5, 35}));
   EXPECT_EQ(extent_of(godot_lightmap_volume({19, 11, 2}), 0), (Extent{19, 11, 8}));
   const auto compressed =
       godot_lightmap_volume({19, 11, 2}, {.shadowmask = true, .format = Format::BC6H_UFLOAT_BLOCK});

@@ -90,6 +90,13 @@ struct UnityApvOptions {
 /// 2·Ry × 3·Rz texels.
 [[nodiscard]] Result<VolumeDesc> bevy_volume(Grid voxels);
 
+/// three.js's LightProbeGrid: nine spherical harmonics of radiance for each colour in one 3D
+/// texture of nx × ny × 7·(nz + 2) texels. Number n, of harmonic n / 3 and colour n mod 3, is
+/// component n mod 4 of sub-volume n / 4. Each sub-volume has a slice before and behind, a copy of
+/// the nearest one. Halves for WebGPURenderer, R32G32B32A32_SFLOAT for WebGLRenderer.
+[[nodiscard]] Result<VolumeDesc> three_volume(Grid probes,
+                                              Format format = Format::R16G16B16A16_SFLOAT);
+
 struct GodotLightmapOptions {
   bool directional = true;  ///< four slices per layer, L0 and L1
   bool shadowmask = false;

@@ -46,9 +46,15 @@ Result<VolumeDesc> unity_apv_l1(Grid bricks) {
 
 Result<VolumeDesc> unreal_vlm(Grid cells) { return unreal_lightmap_volume(cells, count(cells)); }
 
+Result<VolumeDesc> three(Grid probes) { return three_volume(probes); }
+
+Result<VolumeDesc> three_float32(Grid probes) {
+  return three_volume(probes, Format::R32G32B32A32_SFLOAT);
+}
+
 Result<VolumeDesc> godot(Grid texels) { return godot_lightmap_volume(texels); }
 
-constexpr std::array<EngineLayout, 13> kLayouts{{
+constexpr std::array<EngineLayout, 15> kLayouts{{
     {"paper", "Stengel et al.: A2R10G10B10 8+2, RG16F 16+2, atlases", GridUnit::probe,
      paper_volume},
     {"g3d", "G3D: A2B10G10R10 8+2, RG16F 16+2, offsets, atlases", GridUnit::probe, g3d_volume},
@@ -65,6 +71,9 @@ constexpr std::array<EngineLayout, 13> kLayouts{{
     {"unreal-vlm", "Unreal volumetric lightmaps: bricks of 5^3, indirection", GridUnit::cell,
      unreal_vlm},
     {"bevy", "Bevy irradiance volumes: ambient cubes in E5B9G9R9", GridUnit::voxel, bevy_volume},
+    {"three", "three.js LightProbeGrid: harmonics in RGBA16F", GridUnit::probe, three},
+    {"three-float32", "three.js LightProbeGridWebGL: harmonics in RGBA32F", GridUnit::probe,
+     three_float32},
     {"godot", "Godot LightmapGI: RGBA16F, four slices a layer", GridUnit::texel, godot},
 }};
 

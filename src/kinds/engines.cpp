@@ -127,6 +127,17 @@ Result<VolumeDesc> bevy_volume(Grid voxels) {
   });
 }
 
+Result<VolumeDesc> three_volume(Grid probes, Format format) {
+  return guarded([&]() -> Result<VolumeDesc> {
+    constexpr std::uint32_t kParts = 7, kPadding = 2;
+    if (probes.z == 0 || probes.z > kMaxGridSide) return Status::invalid_description;
+    const Grid texels{probes.x, probes.y, kParts * (probes.z + kPadding)};
+    TextureGroup group;
+    group.textures = {named("grid", map_texture(format, texels, kRows))};
+    return texture_volume(std::span(&group, 1));
+  });
+}
+
 Result<VolumeDesc> godot_lightmap_volume(Grid texels, const GodotLightmapOptions& options) {
   return guarded([&]() -> Result<VolumeDesc> {
     if (texels.z > kMaxGridSide) return Status::invalid_description;

@@ -58,7 +58,7 @@ std::array<float, 4> halves(const std::byte* texel) {
 
 TEST(EngineTextures, ProbesStandWhereTheLayoutSays) {
   for (const EngineLayout& layout : engine_layouts()) {
-    if (layout.unit != GridUnit::probe) continue;
+    if (forms_of(layout).light) continue;
     const Filled filled(layout, busy_room());
     const ProbeTextures& traced = filled.traced.volume.textures();
     const auto same = [&](const TextureDesc& from, const std::vector<std::byte>& texels,
@@ -206,6 +206,51 @@ TEST(EngineTextures, LightmapsAreShadedAsGodotDoes) {
                                 {Vec3{0, 0, 1}, 1U, 2U},
                                 {Vec3{0, 0, -1}, 0U, 2U}}) {
     EXPECT_NEAR(shaded(n), traced(y, z), 0.15F) << y << z;
+  }
+}
+
+/// What three.js's shaders sum up is irradiance; padding repeats the slices beside it.
+TEST(EngineTextures, HarmonicsAreSummedUpAsThreeDoes) {
+  const Filled three(layout_of("three-float32"), lit_from_x(), 2048);
+  const Filled bevy(layout_of("bevy"), lit_from_x(), 2048);
+  const EngineTexture& grid = three.texture("grid");
+  const EngineTexture& cubes = bevy.texture("voxels");
+  ASSERT_EQ(extent(grid.desc), (Extent{4, 3, 7 * 7}));
+  const auto green = [&](std::uint64_t harmonic) {
+    const std::uint64_t number = 3 * harmonic + 1;
+    std::array<float, 4> texel{};
+    std::memcpy(texel.data(), at(grid, 2, 1, number / 4 * 7 + 1 + 2), sizeof texel);
+    return texel[number % 4];
+  };
+  const auto irradiance = [&](Vec3 n) {
+    return 0.886227F * green(0) +
+           2 * 0.511664F * (green(1) * n.y + green(2) * n.z + green(3) * n.x) +
+           2 * 0.429043F * (green(4) * n.x * n.y + green(5) * n.y * n.z + green(7) * n.x * n.z) +
+           green(6) * (0.743125F * n.z * n.z - 0.247708F) +
+           0.429043F * green(8) * (n.x * n.x - n.y * n.y);
+  };
+  const auto traced = [&](std::uint64_t y, std::uint64_t z) {
+    std::uint32_t bits = 0;
+    std::memcpy(&bits, at(cubes, 2, 1 + y * 3, 2 + z * 5), sizeof bits);
+    return from_shared_exponent(bits).y;
+  };
+  constexpr float kPi = 3.14159265F;
+  EXPECT_GT(irradiance({1, 0, 0}), 0.3F * kPi);
+  for (const auto& [n, y, z] : {std::tuple{Vec3{1, 0, 0}, 1U, 0U},
+                                {Vec3{-1, 0, 0}, 0U, 0U},
+                                {Vec3{0, 1, 0}, 1U, 1U},
+                                {Vec3{0, -1, 0}, 0U, 1U},
+                                {Vec3{0, 0, 1}, 1U, 2U},
+                                {Vec3{0, 0, -1}, 0U, 2U}}) {
+    EXPECT_NEAR(irradiance(n) / kPi, traced(y, z), 0.05F) << y << z;
+  }
+  const std::size_t slice = std::size_t{4} * 3 * 16;
+  for (std::uint64_t part = 0; part < 7; ++part) {
+    for (const auto& [padding, copied] : {std::pair{0U, 1U}, {6U, 5U}}) {
+      EXPECT_EQ(
+          std::memcmp(at(grid, 0, 0, 7 * part + padding), at(grid, 0, 0, 7 * part + copied), slice),
+          0);
+    }
   }
 }
 

@@ -45,6 +45,8 @@ unity-apv 2x1x1
 unity-apv-l1 2x1x1
 unreal-vlm 1x1x1
 bevy 5x3x4
+three 5x3x4
+three-float32 5x3x4
 godot 5x4x3
 LAYOUTS
 # What the files say of themselves is not read as something else.

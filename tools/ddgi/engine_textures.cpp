@@ -93,6 +93,24 @@ Channels godot(std::size_t slice, const ProbeSample& sample) {
   return channels;
 }
 
+/// three.js: harmonics of radiance that shaders sum up to irradiance, y before z before x. Its
+/// numbers 4·part to 4·part + 3, of three colours each.
+Channels three(std::size_t part, const ProbeSample& sample) {
+  constexpr std::array<std::size_t, 9> kFactors{0, 2, 3, 1, 4, 5, 6, 7, 8};
+  // The norm of each harmonic times its band's share of irradiance over π: 1, 2/3, 1/4.
+  constexpr std::array<float, 9> kScale{0.282095F,        0.488603F / 1.5F, 0.488603F / 1.5F,
+                                        0.488603F / 1.5F, 1.092548F / 4,    1.092548F / 4,
+                                        0.315392F / 4,    1.092548F / 4,    0.546274F / 4};
+  Channels channels{};
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    const std::size_t number = 4 * part + i, harmonic = number / 3;
+    if (harmonic == kFactors.size()) break;
+    const auto f = factors_of(sample.light, number % 3);
+    channels[i] = f[kFactors[harmonic]] / kScale[harmonic];
+  }
+  return channels;
+}
+
 Grid bricks_of(Grid probes, std::uint32_t cells) {
   const auto along = [cells](std::uint32_t n) { return std::max(1U, (n + cells - 2) / cells); };
   return {along(probes.x), along(probes.y), along(probes.z)};
@@ -183,6 +201,18 @@ void fill_cubes(EngineTexture& texture, Grid voxels, const ProbeSamples& samples
   });
 }
 
+/// Sub-volumes with a copy of their first slice before it, and of their last one behind it.
+void fill_harmonics(EngineTexture& texture, Grid probes, const ProbeSamples& samples) {
+  const std::uint32_t slices = probes.z + 2;
+  for_places({probes.x, probes.y, slices}, [&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+    const ProbeSample sample = samples.at(x, y, std::clamp(z, 1U, probes.z) - 1);
+    for (std::uint32_t part = 0; part < 7; ++part) {
+      store_texel(texture.desc.record, texel_at(texture, x, y, part * slices + z),
+                  three(part, sample));
+    }
+  });
+}
+
 void fill_lightmap(EngineTexture& texture, Grid texels, const ProbeSamples& samples) {
   for_places(texels, [&](std::uint32_t x, std::uint32_t y, std::uint32_t layer) {
     const ProbeSample sample = samples.at(x, layer, y);
@@ -192,6 +222,9 @@ void fill_lightmap(EngineTexture& texture, Grid texels, const ProbeSamples& samp
     }
   });
 }
+
+/// True if probes are octahedral blocks, which are traced as they are stored.
+bool is_octahedral(const VolumeDesc& volume) { return volume.kind == kKindProbes; }
 
 /// Nothing moves probes; engines differ in what says that one is inactive.
 Channels probe_state(std::string_view layout, bool active) {
@@ -223,9 +256,9 @@ Grid probes_of(const EngineLayout& layout, Grid wanted) {
 
 TextureForms forms_of(const EngineLayout& layout) {
   TextureForms forms;
-  forms.light = layout.unit != GridUnit::probe;
-  if (forms.light) return forms;
   const auto volume = layout.make({1, 1, 1});
+  forms.light = !is_octahedral(*volume);
+  if (forms.light) return forms;
   const auto& textures = volume->groups.front().textures;
   forms.color = textures[0].desc.record.format;
   forms.color_core = textures[0].desc.block.x;
@@ -269,7 +302,7 @@ void EngineTextures::fill_probes(const ProbeTextures& traced,
 void EngineTextures::fill(const ProbeTextures& traced, std::span<const std::uint32_t> active) {
   std::vector<std::uint8_t> is_active(std::size_t{probes_.x} * probes_.y * probes_.z);
   for (const std::uint32_t probe : active) is_active[probe] = 1;
-  if (layout_.unit == GridUnit::probe) {
+  if (is_octahedral(volume_)) {
     fill_probes(traced, is_active);
     return;
   }
@@ -278,6 +311,7 @@ void EngineTextures::fill(const ProbeTextures& traced, std::span<const std::uint
   for (EngineTexture& texture : textures_) {
     switch (layout_.unit) {
       case GridUnit::probe:
+        fill_harmonics(texture, grid, samples);
         break;
       case GridUnit::brick:
         fill_bricks(texture, grid, cells_of(layout_), samples, unity);

@@ -45,7 +45,8 @@ constexpr std::array kSettings{
             "l1-over-l0: as Unity's probe volumes, ratios in 8 bits"},
     Setting{"layout", "none",
             "the textures of an engine instead: paper, g3d, rtxgi, rtxgi-float16, rtxgi-float32, "
-            "rtxgi-z-up, o3de, flax, unity-apv, unity-apv-l1, unreal-vlm, bevy, godot"},
+            "rtxgi-z-up, o3de, flax, unity-apv, unity-apv-l1, unreal-vlm, bevy, three, "
+            "three-float32, godot"},
     Setting{"fine", "none",
             "also a finer volume, NXxNYxNZ, that moves with the first client's eye, or with the "
             "scene's camera"},
