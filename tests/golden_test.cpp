@@ -1,6 +1,7 @@
 // Bytes written once and kept: what a decoder made of them then it must make of them for ever.
 #include "golden/golden.h"
 #include "container_support.h"
+#include "golden/map_golden.h"
 #include "golden/native_golden.h"
 #include "same_description.h"
 
@@ -134,36 +135,47 @@ TEST(Golden, BlocksOfEveryShape) {
   }
 }
 
-TEST(Golden, NativePresets) {
-  for (const std::string preset : {"fast", "strong", "turbo"}) {
-    const auto bytes = load("native_" + preset + ".gic");
-    MemorySource source(bytes.span());
-    auto reader = ContainerReader::open(source);
-    ASSERT_TRUE(reader.ok()) << preset << reader.status();
-    const auto textures = golden::native_textures();
-    ASSERT_EQ(reader->description().textures.size(), textures.size());
-    std::vector<Decoder> decoders;
-    for (const auto& texture : textures) decoders.push_back(*Decoder::create(texture.desc));
-    for (std::uint32_t frame = 0; frame < golden::kNativeFrames; ++frame) {
-      for (std::size_t i = 0; i < textures.size(); ++i) {
-        ContainerPacket packet;
-        ASSERT_EQ(reader->next(packet), Status::ok)
-            << preset << " " << frame << " " << textures[i].name;
-        ASSERT_EQ(decoders[i].decode(packet.bytes), Status::ok) << textures[i].name;
-        EXPECT_EQ(decoders[i].changed().size(),
-                  frame == 1 ? golden::native_selection(textures[i].desc).size()
-                             : block_count(textures[i].desc));
-        Texture expected(textures[i].desc);
-        golden::paint_native(expected, frame);
-        Texture decoded(textures[i].desc);
-        ASSERT_EQ(decoders[i].read(decoded.view()), Status::ok);
-        for (const auto probe : decoders[i].changed()) {
-          EXPECT_TRUE(decoded.block(probe) == expected.block(probe))
-              << preset << " frame " << frame << " " << textures[i].name << " " << probe;
-        }
+/// All blocks, those of native_selection(), and all, as `paint` has them.
+void expect_native(const std::string& name, const ContainerDescription& description,
+                   void (*paint)(Texture&, std::uint32_t)) {
+  const auto bytes = load(name);
+  MemorySource source(bytes.span());
+  auto reader = ContainerReader::open(source);
+  ASSERT_TRUE(reader.ok()) << name << reader.status();
+  const auto& textures = description.textures;
+  ASSERT_EQ(reader->description().textures.size(), textures.size());
+  std::vector<Decoder> decoders;
+  for (const TextureEntry& texture : textures) decoders.push_back(*Decoder::create(texture.desc));
+  for (std::uint32_t frame = 0; frame < golden::kNativeFrames; ++frame) {
+    for (std::size_t i = 0; i < textures.size(); ++i) {
+      const TextureDesc& desc = textures[i].desc;
+      const std::string what = name + " frame " + std::to_string(frame) + " " + textures[i].name;
+      EXPECT_EQ(reader->description().textures[i].desc, desc) << what;
+      ContainerPacket packet;
+      ASSERT_EQ(reader->next(packet), Status::ok) << what;
+      ASSERT_EQ(decoders[i].decode(packet.bytes), Status::ok) << what;
+      EXPECT_EQ(decoders[i].changed().size(),
+                frame == 1 ? golden::native_selection(desc).size() : block_count(desc));
+      Texture expected(desc), decoded(desc);
+      paint(expected, frame);
+      ASSERT_EQ(decoders[i].read(decoded.view()), Status::ok);
+      for (const auto block : decoders[i].changed()) {
+        EXPECT_TRUE(decoded.block(block) == expected.block(block)) << what << " " << block;
       }
     }
   }
+}
+
+TEST(Golden, NativePresets) {
+  for (const std::string preset : {"fast", "strong", "turbo"}) {
+    expect_native("native_" + preset + ".gic", probe_description(golden::native_textures()),
+                  golden::paint_native);
+  }
+}
+
+TEST(Golden, Maps) {
+  for (const std::string preset : {"fast", "strong"})
+    expect_native("maps_" + preset + ".gic", golden::maps_description(), golden::paint_map);
 }
 
 TEST(Golden, IndexModes) {
@@ -306,9 +318,11 @@ TEST(Golden, IndicesOfOtherPackets) {
 }
 
 TEST(Golden, EveryFileIsTested) {
-  std::set<std::string> known{"README.md",        "golden.h",        "make_golden.cpp",
-                              "native_golden.h",  "native_fast.gic", "native_strong.gic",
-                              "native_turbo.gic", "volumes.gic"};
+  std::set<std::string> known{
+      "README.md",       "golden.h",          "native_golden.h",     "map_golden.h",
+      "make_golden.h",   "make_golden.cpp",   "damaged_packets.cpp", "damaged_containers.cpp",
+      "native_fast.gic", "native_strong.gic", "native_turbo.gic",    "maps_fast.gic",
+      "maps_strong.gic", "volumes.gic"};
   for (const auto& [name, desc] : golden::block_textures()) {
     for (const char* number : {"_1", "_2"}) {
       known.insert("blocks_" + std::string(name) + number + ".packet");

@@ -45,6 +45,15 @@ inline std::uint32_t native_component(std::uint32_t frame, const Grid& at, std::
   return bits <= 10 ? v >> (10 - bits) : v << (bits - 10);
 }
 
+/// Of a record whose other bits are zero there.
+inline void set_component(std::span<std::byte> record, const Component& component,
+                          std::uint32_t value) {
+  for (std::uint32_t b = 0; b < component.bits; ++b) {
+    const std::uint32_t bit = component.offset + b;
+    record[bit / 8] |= static_cast<std::byte>((value >> b & 1) << bit % 8);
+  }
+}
+
 inline void paint_native(test::Texture& texture, std::uint32_t frame) {
   const auto& desc = texture.desc();
   for (std::uint32_t probe = 0; probe < block_count(desc); ++probe) {
@@ -57,10 +66,7 @@ inline void paint_native(test::Texture& texture, std::uint32_t frame) {
         for (std::uint32_t c = 0; c < desc.record.count; ++c) {
           const Component& component = desc.record.components[c];
           const std::uint32_t value = native_component(frame, at, i, j, c, component.bits);
-          for (std::uint32_t b = 0; b < component.bits; ++b) {
-            const std::uint32_t bit = component.offset + b;
-            texel[bit / 8] |= static_cast<std::byte>((value >> b & 1) << bit % 8);
-          }
+          set_component(texel, component, value);
         }
       }
     }
