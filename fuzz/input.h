@@ -220,6 +220,7 @@ class Input {
     desc.presence = static_cast<Presence>(head[4] / 16 % 3);
     desc.layout = static_cast<Tiling>((head[4] >> 1) % kTilingCount);
     while (desc.block.x > 1 && block_bytes(desc) * block_count(desc) > kMaxBytes) --desc.block.x;
+    if ((head[3] & 16) != 0) desc.model = Model::continuous;
     if ((head[4] & 1) != 0) {
       desc.space = Space::pool;
       desc.model = Model::none;

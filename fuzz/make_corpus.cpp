@@ -3,54 +3,28 @@
 // these, with NEW and GROWN as work folders:
 //   script/fuzz NAME SECONDS GROWN FOLDER/NAME
 //   fuzz_NAME -set_cover_merge=1 -use_counters=0 -max_len=4096 NEW FOLDER/NAME GROWN
+#include "make_corpus.h"
+
 #include "bitstream/container_format.h"
 #include "bitstream/index_buffer.h"
 #include "bitstream/packet.h"
-#include "input.h"
 #include "memory_sink.h"
-#include "messages.h"
 
-#include <gicodec/irradiance_vectors.h>
 #include <gicodec/streaming.h>
 #ifdef GICODEC_HEVC
 #include "backend/hevc/payload.h"
 #include "hevc_setup.h"
 #endif
 
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <map>
 #include <numeric>
-#include <random>
-#include <string>
 
 namespace {
 
 using namespace gicodec;
-using Bytes = std::vector<std::byte>;
+using fuzz::append;
+using fuzz::Bytes;
+using fuzz::Corpus;
 
-class Corpus {
- public:
-  explicit Corpus(std::filesystem::path root) : root_(std::move(root)) {}
-  void add(const std::string& target, const Bytes& bytes) {
-    const auto folder = root_ / target;
-    std::filesystem::create_directories(folder);
-    const auto name = "seed-" + std::to_string(++count_);
-    std::ofstream(folder / name, std::ios::binary)
-        .write(reinterpret_cast<const char*>(bytes.data()),
-               static_cast<std::streamsize>(bytes.size()));
-  }
-
- private:
-  std::filesystem::path root_;
-  int count_ = 0;
-};
-
-void append(Bytes& to, std::span<const std::byte> more) {
-  to.reserve(to.size() + more.size());
-  to.insert(to.end(), more.begin(), more.end());
-}
 void append_u16(Bytes& to, std::size_t value) {
   to.push_back(static_cast<std::byte>(value));
   to.push_back(static_cast<std::byte>(value >> 8));
@@ -266,184 +240,6 @@ void add_index_buffers(Corpus& corpus, std::mt19937& random) {
   }
 }
 
-/// A description, settings, then a keyframe and an update: smooth texels and noise.
-void add_native_round_trips(Corpus& corpus, std::mt19937& random) {
-  for (const FormatInfo& info : formats()) {
-    const auto side = static_cast<std::uint8_t>(1 + random() % 3);
-    const TextureDesc desc = probe_texture(info.record, {5, 4, 3}, side, 0);
-    for (const bool noisy : {false, true}) {
-      Bytes seed;
-      fuzz::put_desc(desc, seed);
-      for (int i = 0; i < 4; ++i) seed.push_back(static_cast<std::byte>(random()));
-      for (const std::byte kind : {std::byte{1}, std::byte{2}}) {
-        Bytes part{kind, std::byte{0}};
-        for (std::size_t i = 0; i < (kind == std::byte{1} ? 600 : 50); ++i) {
-          part.push_back(static_cast<std::byte>(noisy ? random() : i / 8 + random() % 2));
-        }
-        fuzz::put_part(part, 0, seed);
-      }
-      corpus.add("native_round_trip", seed);
-    }
-  }
-}
-
-/// Blocks in pools some records of which exist, and records of many planes: payloads, round trips.
-void add_partial(Corpus& corpus, std::mt19937& random) {
-  for (unsigned i = 0; i < 12; ++i) {
-    // Counted, masked, whole or a set; of the application's own records and presets.
-    const Bytes seed{static_cast<std::byte>(192 + 2 * i + i / 3 % 2),
-                     static_cast<std::byte>(i),
-                     std::byte{2},
-                     static_cast<std::byte>(i % 2 == 0 ? 1 : 33),
-                     static_cast<std::byte>(1 + 16 * (i % 3)),
-                     static_cast<std::byte>(random())};
-    const TextureDesc desc = fuzz::Input(seed).any_desc();
-    // How many bytes say it over and over, and they.
-    Bytes said(desc.presence == Presence::all ? 0 : 5);
-    for (auto& byte : said) byte = static_cast<std::byte>(&byte == said.data() ? 4 : random());
-    const Bytes presence = fuzz::Input(said).presence(desc);
-    const auto size = static_cast<std::size_t>(texture_bytes(desc));
-    Bytes payloads = seed, trips = seed, texels(size);
-    append(payloads, said);
-    append(trips, said);
-    for (int k = 0; k < 4; ++k) trips.push_back(static_cast<std::byte>(random()));
-    auto encoder = *Encoder::create(desc, {.backend = "native"});
-    (void)encoder.set_presence(presence);
-    for (int frame = 0; frame < 2; ++frame) {
-      for (auto& byte : texels) {
-        if (frame == 0 || random() % 8 == 0)
-          byte = static_cast<std::byte>(frame * 3 + random() % 4);
-      }
-      const auto packet = *encoder.encode(ConstTextureView(texels), Selection::all());
-      Bytes part{std::byte{frame == 0}, std::byte{0}};
-      Bytes pattern = part;
-      append(part, parse_packet(packet)->payload);
-      if (part.size() <= fuzz::kMaxPart) fuzz::put_part(part, 0, payloads);
-      append(pattern, std::span(texels).first(std::min<std::size_t>(size, 300)));
-      fuzz::put_part(pattern, 0, trips);
-    }
-    corpus.add("native_payload", payloads);
-    corpus.add("native_round_trip", trips);
-  }
-}
-
-/// Messages of recorded sessions, one by one and all of a side together.
-void add_sessions(Corpus& corpus, const std::filesystem::path& folder) {
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    if (entry.path().extension() != ".session") continue;
-    std::ifstream file(entry.path(), std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(file), {}};
-    const auto bytes = std::as_bytes(std::span(text));
-    for (const std::byte side : {std::byte{0}, std::byte{1}}) {
-      Bytes session(1, std::byte{entry.path().filename().string().starts_with("shared")});
-      for (std::size_t at = 0; at < bytes.size();) {
-        std::uint32_t size = 0;
-        std::memcpy(&size, bytes.data() + at + 1, sizeof size);
-        const auto message = bytes.subspan(at + 5, size);
-        if (bytes[at] == side && size < 1024) {
-          corpus.add("message", Bytes(message.begin(), message.end()));
-          fuzz::put_part(message, 0, session);
-        }
-        at += 5 + size;
-      }
-      corpus.add("session", session);
-      if (side == std::byte{1}) corpus.add("client", session);
-    }
-  }
-}
-
-/// What a server says to a client of large volumes in which little changes.
-void add_clients(Corpus& corpus) {
-  constexpr Grid kGrid{16, 8, 16};
-  const std::vector<NamedTexture> probes{
-      {"color", probe_texture(Format::A2B10G10R10_UNORM_PACK32, kGrid, 8)},
-      {"vis", probe_texture(Format::R16G16_SFLOAT, kGrid, 16, 1, Tiling::slices_xz_y)}};
-  const std::pair<const char*, VolumeDesc> cases[] = {{"native", *probe_volume(probes)},
-                                                      {"zstd", *probe_volume(probes)},
-                                                      {"lz4", *irradiance_vector_volume(kGrid)}};
-  for (const auto& [backend, volume] : cases) {
-    const auto& textures = volume.groups[0].textures;
-    for (const Delivery delivery : {Delivery::unicast, Delivery::shared}) {
-      auto server = *Server::create({.backend = backend, .proofs = true});
-      (void)server.add_volume("v", volume, {kGrid});
-      auto client = *Client::create({.delivery = delivery});
-      const ConnectionId connection = *server.connect(0);
-      server.receive(connection, *client.hello(), 0);
-      BlockMask some(block_count(textures[0].desc));
-      const std::size_t step = delivery == Delivery::shared ? 1100 : 300;
-      for (std::size_t i = 0; i < some.size(); i += step) some[i] = 1;
-      Message subscribe;
-      (void)write_message(Subscribe{1, 0, 0, some}, subscribe);
-      server.receive(connection, subscribe, 0);
-      Bytes session{std::byte{delivery == Delivery::shared}};
-      for (int update = 1; update <= 4; ++update) {
-        if (update == 3) (void)server.scroll(0, {1, 0, 0});
-        for (std::uint8_t t = 0; t < textures.size(); ++t) {
-          const Bytes texels(texture_bytes(textures[t].desc), static_cast<std::byte>(update * 21));
-          (void)server.publish(0, t, ConstTextureView{texels});
-        }
-        (void)server.update(update, update);
-      }
-      for (const Message& message : joined(server.take_messages(connection)))
-        fuzz::put_part(message, 0, session);
-      corpus.add("client", session);
-    }
-  }
-}
-
-/// A session in which volumes come and go, one of them under the number of one that went.
-void add_changing_volumes(Corpus& corpus) {
-  constexpr Grid kGrid{3, 2, 2};
-  const NamedTexture texture{"t", probe_texture(Format::R16_SFLOAT, kGrid, 2), {}, {}};
-  const VolumeDesc probes = *probe_volume({&texture, 1}),
-                   vectors = *irradiance_vector_volume(kGrid);
-  for (const Delivery delivery : {Delivery::unicast, Delivery::shared}) {
-    auto server = *Server::create({.backend = "raw", .proofs = true});
-    auto client = *Client::create({.delivery = delivery});
-    std::map<std::uint16_t, const VolumeDesc*> there;
-    const auto add = [&](const char* name, const VolumeDesc& volume) {
-      there[*server.add_volume(name, volume, {kGrid})] = &volume;
-    };
-    const auto remove = [&](std::uint16_t number) {
-      (void)server.remove_volume(number);
-      there.erase(number);
-    };
-    Bytes said{std::byte{delivery == Delivery::shared}}, replied = said;
-    const auto reply = [&](ConnectionId connection, const Message& message, double now) {
-      corpus.add("message", Bytes(message.begin(), message.end()));
-      fuzz::put_part(message, 0, replied);
-      server.receive(connection, message, now);
-    };
-    add("near", probes);
-    const ConnectionId connection = *server.connect(0);
-    reply(connection, *client.hello(), 0);
-    for (int update = 1; update <= 8; ++update) {
-      if (update == 3) add("vectors", vectors);
-      if (update == 5) remove(0);
-      if (update == 6) add("far", probes);
-      if (update == 7) remove(1);
-      for (const auto& [number, volume] : there) {
-        for (std::uint8_t t = 0; t < volume->groups[0].textures.size(); ++t) {
-          const Bytes texels(texture_bytes(volume->groups[0].textures[t].desc),
-                             static_cast<std::byte>(update * 21));
-          (void)server.publish(number, t, ConstTextureView{texels});
-        }
-        (void)client.subscribe(number, BlockMask(block_count(texture.desc), 1));
-      }
-      (void)server.update(update, update);
-      for (const Message& message : joined(server.take_messages(connection))) {
-        corpus.add("message", Bytes(message.begin(), message.end()));
-        fuzz::put_part(message, 0, said);
-        (void)client.receive(message);
-      }
-      for (const Message& message : client.take_messages()) reply(connection, message, update);
-    }
-    corpus.add("client", said);
-    corpus.add("session", said);
-    corpus.add("session", replied);
-  }
-}
-
 #ifdef GICODEC_HEVC
 /// Payloads, and the access units in them for every format of picture.
 void add_hevc(Corpus& corpus) {
@@ -493,12 +289,9 @@ int main(int argc, char** argv) {
     for (auto& byte : seed) byte = static_cast<std::byte>(random() % (i % 2 == 0 ? 256 : 12));
     corpus.add("round_trip", seed);
   }
-  add_native_round_trips(corpus, random);
-  add_partial(corpus, random);
+  fuzz::add_native(corpus, random);
   add_transforms(corpus, random);
-  add_sessions(corpus, argv[2]);
-  add_clients(corpus);
-  add_changing_volumes(corpus);
+  fuzz::add_streams(corpus, argv[2]);
 #ifdef GICODEC_HEVC
   add_hevc(corpus);
 #endif

@@ -1,8 +1,8 @@
 // Whatever the records, they come back, within the bound, from the same bytes on every instruction
 // set, with memory that stay from update to update as in a session or fresh ones.
 #include "mutate.h"
+#include "native_settings.h"
 
-#include "native/frame/payload.h"
 #include "quantise/set_order.h"
 #include "texture/presence.h"
 
@@ -28,13 +28,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto desc = input.any_desc();
   const auto presence = input.presence(desc);
   const std::size_t block = block_bytes(desc), said = presence_bytes(desc);
-  native::PayloadSettings settings;
   const auto flags = input.byte();
-  if ((flags & 1) != 0) settings.chunk.preset = native::Preset::strong;
-  settings.threads = 1 + (flags >> 1 & 1);
-  if ((flags & 8) != 0) settings.chunk.preset = native::Preset::turbo;
-  settings.chunk.others = (flags & 16) == 0;
-  settings.chunk.streams = 4U << (flags >> 4) % 5;
+  native::PayloadSettings settings = native_settings(flags);
   // A few boxes of any shape, or those of the encoder's choice.
   Grid box{1 + input.byte() % desc.grid.x, 1 + input.byte() % desc.grid.y,
            1 + input.byte() % desc.grid.z};
