@@ -174,6 +174,12 @@ TEST(Memory, ThreadsTakeTheirShareEach) {
     const auto packets = expect_encoder_within_bound(desc, {"native", 0, true}, threads);
     expect_decoder_within_bound(desc, packets, threads);
   }
+  // Three chunks of rows, and of what learns.
+  const TextureDesc rows = map(Format::R8_UNORM, {96, 48, 1}, {8, 8, 1});
+  for (const char* preset : {"fast", "strong"}) {
+    const auto packets = expect_encoder_within_bound(rows, {"native", 0, true, preset}, 3);
+    expect_decoder_within_bound(rows, packets, 3);
+  }
 }
 
 TEST(Memory, ForgedPacketsTakeNoMore) {

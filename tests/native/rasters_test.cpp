@@ -294,6 +294,20 @@ TEST(NativeRasters, BoxesAreBounded) {
   }
 }
 
+/// Rows code all of their box: few blocks cannot make a decoder do that.
+TEST(NativeRasters, RowsAreOfHalfOfTheirBox) {
+  const TextureDesc desc = map_texture(Format::R8_UNORM, {5, 1, 1}, {32, 32, 1});
+  auto u = update_of(desc, true, false);
+  const Bytes payload = test::encode(u, rows(), best_isa());
+  ASSERT_TRUE(is_rows(u, payload));
+  for (const auto& [blocks, status] :
+       {std::pair{std::vector<std::uint32_t>{0, 2, 4}, Status::ok}, {{0, 4}, Status::corrupt}}) {
+    u.blocks = blocks;
+    u.records.resize(blocks.size() * block_bytes(desc));
+    EXPECT_EQ(decoded(u, payload), status) << blocks.size();
+  }
+}
+
 TEST(NativeRasters, PalettesMustFit) {
   const TextureDesc desc = map_texture(Format::R8_UNORM, {1, 1, 1}, {4, 4, 1});
   const auto u = test::make_update(desc, test::Content::constant, true, 1, 1);

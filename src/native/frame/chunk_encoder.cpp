@@ -133,8 +133,7 @@ void find_frequent(const Update& u, Workspace& w, ChunkHead& head) {
 bool rows_pay(const Update& u, const EncodeSettings& settings,
               std::span<const std::uint32_t> positions) {
   if (settings.set >= 0 || settings.lanes != 0 || settings.observe) return false;
-  return takes_rows(u.desc) && fits_rows(u.desc, u.box) &&
-         2 * positions.size() >= blocks_around(u, positions);
+  return takes_rows(u.desc) && fits_rows(u.desc, u.box) && fills_rows(u, positions);
 }
 
 class ChunkEncoder {

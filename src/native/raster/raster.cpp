@@ -32,8 +32,8 @@ std::uint32_t blocks_of_raster(const TextureDesc& desc) noexcept {
   return static_cast<std::uint32_t>(std::max<std::size_t>(1, kMaxRasterValues / values));
 }
 
-std::size_t blocks_around(const Update& u, std::span<const std::uint32_t> positions) {
-  return box_around(u.desc.grid, u.probes, positions).count();
+bool fills_rows(const Update& u, std::span<const std::uint32_t> positions) {
+  return 2 * positions.size() >= box_around(u.desc.grid, u.probes, positions).count();
 }
 
 std::uint64_t raster_memory(const TextureDesc& desc) noexcept {

@@ -61,7 +61,8 @@ Status check_rows(const TextureDesc& desc, std::span<const std::byte> bytes) {
 Status decode_rows(const Update& u, std::span<const std::uint32_t> positions,
                    std::span<const std::byte> bytes, std::span<std::byte> records,
                    RowMemory& memory, ValueModel& values) {
-  if (!takes_rows(u.desc) || !fits_rows(u.desc, u.box)) return Status::corrupt;
+  if (!takes_rows(u.desc) || !fits_rows(u.desc, u.box) || !fills_rows(u, positions))
+    return Status::corrupt;
   RowPlanes& planes = memory.planes;
   ByteReader reader(bytes);
   const std::uint64_t size = reader.varint();
