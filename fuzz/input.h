@@ -211,8 +211,11 @@ class Input {
   static TextureDesc general(const Head& head) {
     constexpr std::array<std::uint8_t, 8> kSizes{1, 2, 3, 5, 12, 16, 33, 64};
     TextureDesc desc;
+    const bool continuous = (head[4] & 1) == 0 && (head[3] & 16) != 0;
+    if (continuous) desc.model = Model::continuous;
+    // Continuous textures have the first presets, which are no compressed blocks.
     desc.record = (head[0] & 1) != 0 ? plain_record(kSizes[head[0] / 2U % kSizes.size()])
-                                     : preset(head[0] / 2U);
+                                     : preset(head[0] / 2U - (continuous ? 96U : 0U));
     desc.grid = {1U + head[1] % 12U, 1U + head[2] % 8U, 1U + head[3] % 8U};
     desc.block = {static_cast<std::uint8_t>(1 + head[5] % 8),
                   static_cast<std::uint8_t>(1 + head[5] / 8 % 8),
@@ -220,7 +223,6 @@ class Input {
     desc.presence = static_cast<Presence>(head[4] / 16 % 3);
     desc.layout = static_cast<Tiling>((head[4] >> 1) % kTilingCount);
     while (desc.block.x > 1 && block_bytes(desc) * block_count(desc) > kMaxBytes) --desc.block.x;
-    if ((head[3] & 16) != 0) desc.model = Model::continuous;
     if ((head[4] & 1) != 0) {
       desc.space = Space::pool;
       desc.model = Model::none;

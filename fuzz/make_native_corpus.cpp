@@ -78,9 +78,9 @@ void add_maps(Corpus& corpus, std::mt19937& random) {
     const Bytes seed{static_cast<std::byte>(192 + 2 * i),
                      static_cast<std::byte>((i % 4 == 1 ? 128 : 0) + i % 5),
                      std::byte{3},
-                     kContinuous | std::byte{2 * solid},
+                     kContinuous | (solid ? std::byte{2} : std::byte{0}),
                      static_cast<std::byte>(i % 7 == 5 ? 32 : 0),
-                     static_cast<std::byte>(3 + 8 * (i % 5))};
+                     static_cast<std::byte>(7 + 8 * (3 + i % 5))};
     const TextureDesc desc = Input(seed).any_desc();
     const Bytes said(desc.presence == Presence::all ? 0 : 1);  // no bytes over and over: all exist
     const Bytes presence = Input(said).presence(desc);
@@ -98,9 +98,10 @@ void add_maps(Corpus& corpus, std::mt19937& random) {
       for (int frame = 0; frame < 2; ++frame) {
         for (std::size_t at = 0; at < size; ++at) {
           const std::size_t place = at / desc.record.bytes;
-          if (frame == 0 || random() % 16 == 0)
-            records[at] =
-                static_cast<std::byte>(40 + place / 4 + at % desc.record.bytes + random() % 2);
+          if (frame == 0 || place % 8 == 5) {
+            const std::size_t value = 40 + place / 32 % 8 + at % desc.record.bytes + frame;
+            records[at] = static_cast<std::byte>(value + (random() % 8 == 0 ? 1 : 0));
+          }
         }
         Bytes part{std::byte{frame == 0}, std::byte{0}};
         Bytes pattern = part;
