@@ -38,7 +38,7 @@ class Rows : RasterState {
   bool decode(const std::vector<AdaptiveBlock>& blocks, const HeldBlocks& held, Bytes& in,
               std::vector<std::vector<std::byte>>& out) {
     lay_out(blocks, held);
-    if (2 * blocks.size() * record_count(desc_.block) < now_.size()) return false;
+    if (4 * blocks.size() * record_count(desc_.block) < now_.size()) return false;
     is_coded_.assign(now_.size(), true);
     if (!forms() || !models_.source().finished()) return false;
     for (unsigned c = 0; c < channels_.size(); ++c) {

@@ -33,7 +33,7 @@ std::uint32_t blocks_of_raster(const TextureDesc& desc) noexcept {
 }
 
 bool fills_rows(const Update& u, std::span<const std::uint32_t> positions) {
-  return 2 * positions.size() >= box_around(u.desc.grid, u.probes, positions).count();
+  return 4 * positions.size() >= box_around(u.desc.grid, u.probes, positions).count();
 }
 
 std::uint64_t raster_memory(const TextureDesc& desc) noexcept {
