@@ -151,6 +151,28 @@ TEST(Memory, SessionsKeepToTheBound) {
   }
 }
 
+TEST(Memory, ChangesOfThePresetKeepToTheBound) {
+  for (const auto& desc : kShapes) {
+    const auto frames = frames_of(desc);
+    const Bytes presence = full_presence(desc);
+    std::size_t size = 0;
+    const std::size_t peak = heap_peak_of([&] {
+      auto encoder = *Encoder::create(desc);
+      (void)encoder.set_presence(presence);
+      Packet packet;
+      for (const char* preset : {"turbo", "strong", "fast", "turbo"}) {
+        (void)encoder.set_preset(preset);
+        for (const auto& frame : frames) {
+          (void)encoder.encode_to(std::as_const(*frame).view(), Selection::all(), packet);
+          size = std::max(size, packet.capacity());
+        }
+      }
+    });
+    EXPECT_GT(size, 0U);
+    EXPECT_LE(peak - size, (Bounds{desc}.encoder("native", false))) << desc;
+  }
+}
+
 TEST(Memory, ABoundTakesTwoTexturesMore) {
   const TextureDesc desc = partial(Presence::mask, Format::R8G8B8A8_UNORM, {16, 16, 8}, 300);
   for (const char* backend : {"raw", "native", "zstd"}) {

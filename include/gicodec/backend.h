@@ -89,6 +89,9 @@ class BackendEncoder {
   [[nodiscard]] virtual bool lossy() const { return false; }
   /// True if a payload depends on more of the past than the mirror. Encoder::snapshot() then fails.
   [[nodiscard]] virtual bool is_stateful() const { return false; }
+  /// BackendSettings::preset of the next payloads, which the same decoder takes. invalid_settings;
+  /// unsupported_backend, the default, if it cannot change.
+  virtual Status set_preset(std::string_view /*preset*/) { return Status::unsupported_backend; }
   /// Appends the payload to `out`. After an error of a backend that is_stateful(), the next job is
   /// a keyframe.
   virtual Status encode(const EncodeJob& job, std::vector<std::byte>& out) = 0;

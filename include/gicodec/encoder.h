@@ -93,6 +93,9 @@ class Encoder {
   [[nodiscard]] Result<Packet> snapshot();
   /// Makes the next packet a keyframe.
   void request_keyframe() noexcept;
+  /// BackendSettings::preset from the next packet on; decoders need not know. invalid_settings;
+  /// unsupported_backend if the backend, unlike native, cannot change it.
+  Status set_preset(std::string_view preset);
   /// Excludes inactive blocks (e.g. probes inside walls) from Selection::changed(): one byte per
   /// block, 0 for inactive; empty: no block is excluded. In a keyframe inactive blocks are zero at
   /// the decoder. mask_mismatch.

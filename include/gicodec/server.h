@@ -75,6 +75,7 @@ struct ServerTimeouts {
 
 struct ServerOptions {
   std::string_view backend = "native";
+  /// Without a preset the server chooses those of native packets, see docs/streaming.md.
   BackendSettings settings = {};
   std::vector<const Backend*> backends = {};  ///< further ones; must outlive the server
   std::vector<const Kind*> kinds = {};        ///< further ones; must outlive the server
@@ -132,6 +133,7 @@ struct ConnectionStatistics {
   std::uint32_t pending = 0;
   std::uint32_t oldest_pending = 0;  ///< unicast: updates since the first of them changed
   std::size_t memory = 0;            ///< bytes held for the client
+  std::string_view preset = {};      ///< that the server chose; empty: none. Static storage
 };
 
 /// One thread at a time. `now` is in seconds on any clock that does not go backwards.
@@ -214,8 +216,9 @@ class Server {
   /// with pending blocks get even shares of the latter, or take turns if a share is less than a
   /// block. Blocks beyond the limit stay pending. 0, the default: no limit.
   void set_limit_for_few(std::uint32_t blocks) noexcept;
-  /// Adapts that limit: lowers it while updates take longer than `budget`, else raises it.
-  /// `elapsed`: how long the last update took. In seconds; ignores values that are no times.
+  /// Adapts that limit and the presets to choose from: lowers it while updates take longer than
+  /// `budget`, and makes these "turbo"; else raises it. `elapsed`: how long the last update took.
+  /// In seconds; ignores values that are no times. Without reports no preset is slower than "fast".
   void report_update_time(double elapsed, double budget) noexcept;
   /// Enforces timeouts; update() does so too.
   void tick(double now);

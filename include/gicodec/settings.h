@@ -16,7 +16,7 @@ struct BackendSettings {
   /// lz4 its acceleration; 0: the backend's default.
   int level = 0;
   /// native: "turbo" for fast links, "fast" (the default) or "strong"; hevc: an x265 preset; empty:
-  /// the backend's default.
+  /// the backend's default, but for native at a Server, which then chooses for each client.
   std::string preset = {};
   /// native: most blocks per chunk, 1..4096. 0: chosen by the volume's size, the same for every
   /// update ("strong": up to 4096). A thread codes a chunk on its own: smaller chunks use more

@@ -74,6 +74,8 @@ class VolumeEncoder {
   [[nodiscard]] Result<std::vector<Packet>> snapshot();
   /// Makes the next packets keyframes.
   void request_keyframe() noexcept;
+  /// As Encoder::set_preset(); unknown_texture.
+  Status set_preset(std::uint8_t texture, std::string_view preset);
   /// Excludes inactive blocks of a group from Selection::changed(), see Encoder::set_active().
   /// unknown_group, mask_mismatch.
   Status set_active(std::uint8_t group, std::span<const std::uint8_t> active);

@@ -4,23 +4,37 @@
 #include "base/parallel.h"
 #include "native/frame/payload.h"
 
+#include <optional>
+#include <string_view>
+
 namespace gicodec {
 namespace {
 
 constexpr std::uint64_t kMaxInput = std::uint64_t{1} << 30;  // as the byte backends
 
+std::optional<native::Preset> find_preset(std::string_view name) noexcept {
+  if (name.empty() || name == "fast") return native::Preset::fast;
+  if (name == "turbo") return native::Preset::turbo;
+  if (name == "strong") return native::Preset::strong;
+  return std::nullopt;
+}
+
 class NativeEncoder final : public BackendEncoder {
  public:
-  NativeEncoder(const TextureDesc& desc, const BackendSettings& settings)
+  NativeEncoder(const TextureDesc& desc, const BackendSettings& settings, native::Preset preset)
       : desc_(desc), isa_(settings.isa) {
-    settings_.chunk.preset = settings.preset == "strong"  ? native::Preset::strong
-                             : settings.preset == "turbo" ? native::Preset::turbo
-                                                          : native::Preset::fast;
+    settings_.chunk.preset = preset;
     settings_.threads = settings.threads;
     if (settings.chunk != 0) settings_.box = native::default_box(desc.grid, settings.chunk);
   }
   [[nodiscard]] std::size_t bound(std::size_t blocks) const override {
     return native::payload_bound(desc_, blocks);
+  }
+  Status set_preset(std::string_view name) override {
+    const auto preset = find_preset(name);
+    if (!preset) return Status::invalid_settings;
+    settings_.chunk.preset = *preset;
+    return Status::ok;
   }
   Status encode(const EncodeJob& job, std::vector<std::byte>& out) override {
     return guarded([&] {
@@ -58,14 +72,14 @@ Result<std::unique_ptr<BackendEncoder>> NativeBackend::make_encoder(
   return guarded([&]() -> Result<std::unique_ptr<BackendEncoder>> {
     const Status status = validate(desc);
     if (status != Status::ok) return status;
-    const bool known = settings.preset.empty() || settings.preset == "turbo" ||
-                       settings.preset == "fast" || settings.preset == "strong";
-    if (!known || settings.level != 0 || settings.chunk > native::kMaxChunkProbes ||
+    const auto preset = find_preset(settings.preset);
+    if (!preset || settings.level != 0 || settings.chunk > native::kMaxChunkProbes ||
         !is_valid(settings.threads) || !is_supported(settings.isa)) {
       return Status::invalid_settings;
     }
     if (block_count(desc) * block_bytes(desc) > kMaxInput) return Status::limit_exceeded;
-    return std::unique_ptr<BackendEncoder>(std::make_unique<NativeEncoder>(desc, settings));
+    return std::unique_ptr<BackendEncoder>(
+        std::make_unique<NativeEncoder>(desc, settings, *preset));
   });
 }
 

@@ -81,6 +81,10 @@ Result<Packet> Encoder::snapshot() {
 
 void Encoder::request_keyframe() noexcept { state_->texture->request_keyframe(); }
 
+Status Encoder::set_preset(std::string_view preset) {
+  return guarded([&] { return state_->texture->set_preset(preset); });
+}
+
 Status Encoder::set_active(std::span<const std::uint8_t> active) {
   if (!active.empty() && active.size() != block_count(desc())) return Status::mask_mismatch;
   return guarded([&]() -> Status {

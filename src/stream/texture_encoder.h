@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string_view>
 #include <utility>
 
 namespace gicodec {
@@ -41,6 +42,7 @@ class TextureEncoder {
     return keyframe_wanted_ || (gop_ > 0 && since_keyframe_ >= gop_);
   }
   void request_keyframe() noexcept { keyframe_wanted_ = true; }
+  Status set_preset(std::string_view preset) { return backend_->set_preset(preset); }
   void set_active(Vector<std::uint8_t> active) noexcept { active_ = std::move(active); }
   /// `presence`: presence_bytes() of every block.
   void set_presence(std::span<const std::byte> presence) {

@@ -162,6 +162,11 @@ void VolumeEncoder::request_keyframe() noexcept {
   for (const auto& texture : state_->textures) texture->request_keyframe();
 }
 
+Status VolumeEncoder::set_preset(std::uint8_t texture, std::string_view preset) {
+  if (texture >= state_->textures.size()) return Status::unknown_texture;
+  return guarded([&] { return state_->textures[texture]->set_preset(preset); });
+}
+
 Status VolumeEncoder::set_active(std::uint8_t group, std::span<const std::uint8_t> active) {
   if (group >= desc().groups.size()) return Status::unknown_group;
   const auto own = state_->encoders_of(group);

@@ -75,6 +75,8 @@ class World {
     const auto id = distributor_->connect(delivery, receiver.budget);
     ASSERT_TRUE(id.ok());
     receiver.id = *id;
+    constexpr double kThroughputs[] = {0, 1, 1e12};
+    ASSERT_EQ(distributor_->set_throughput(*id, kThroughputs[random_() % 3]), Status::ok);
     receivers_.push_back(std::move(receiver));
     look(receivers_.back());
   }
@@ -105,6 +107,8 @@ class World {
         ASSERT_EQ(distributor_->set_active(0, active_[group], group), Status::ok);
       }
     }
+    // Presets change.
+    distributor_->report_update_time(chance(random_, 12) ? 2 : 0.1, 1);
     ASSERT_EQ(distributor_->update(), Status::ok);
     volume_.updated(distributor_->updates());
     remember();

@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace gicodec::test {
@@ -48,10 +49,10 @@ class PathToServer {
   explicit PathToServer(double rate,
                         ServerOptions options = {.limits = {.max_waiting = 1000,
                                                             .max_unicast = 1000}},
-                        std::uint32_t max_clients = 1000)
+                        std::uint32_t max_clients = 1000, std::string_view backend = "raw")
       : rate_(rate) {
     options.limits.max_clients = max_clients;
-    options.backend = "raw";
+    options.backend = backend;
     options.region = {4, 4, 4};
     auto server = Server::create(options);
     EXPECT_TRUE(server.ok());
@@ -149,9 +150,11 @@ class PathToServer {
   }
 
  protected:
+  virtual void paint(Texture& texture, Random& random) { texture.fill(Fill::noise, random); }
   virtual void after_update() {}
   virtual void tick() {}
   [[nodiscard]] Server& server() { return *server_; }
+  [[nodiscard]] const Viewer& viewer(std::size_t i) const { return viewers_[i]; }
   [[nodiscard]] double now() const { return now_; }
   void advance(double seconds) { now_ += seconds; }
   [[nodiscard]] Flow& flow(std::size_t i) { return flows_[i]; }
@@ -170,7 +173,7 @@ class PathToServer {
 
  private:
   void update() {
-    texture_.fill(Fill::noise, random_);
+    paint(texture_, random_);
     ASSERT_EQ(server_->publish(0, 0, std::as_const(texture_).view()), Status::ok);
     ASSERT_EQ(server_->update(now_, now_), Status::ok);
     due_ += kInterval;

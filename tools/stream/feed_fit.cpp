@@ -20,7 +20,8 @@ void check_backend(const ServerFlags& o, const FeedVolume& volume) {
     const Status status = (*backend)->make_encoder(texture->desc, o.server.settings).status();
     if (status == Status::invalid_settings) {
       fail(Exit::usage,
-           "backend {} refuses{}: native takes --preset turbo, fast or strong and --chunk up to "
+           "backend {} refuses{}: native takes --preset auto, turbo, fast or strong and --chunk up "
+           "to "
            "4096, lz4 "
            "--level -64 to 12, zstd -64 to 22, raw none of them",
            o.backend, tools::given_settings(o.server.settings));

@@ -26,17 +26,19 @@ std::string Service::answer(const std::string& command) {
 
 std::string Service::list() {
   std::string text =
-      fmt::format("{:>6}  {:21}  {:8}  {:>9}  {:>10}  {:>8}  {:>9}  {}\n", "client", "address",
-                  "delivery", "seconds", "MB", "updates", "in flight", "user");
+      fmt::format("{:>6}  {:21}  {:8}  {:>9}  {:>10}  {:>8}  {:>9}  {:6}  {}\n", "client",
+                  "address", "delivery", "seconds", "MB", "updates", "in flight", "preset", "user");
   for (const auto& [id, connection] : connections_) {
     const auto s = server_.statistics(id);
     const auto it = s && !connection.closing ? sessions_.find(s->client) : sessions_.end();
     if (it == sessions_.end()) continue;
-    text += fmt::format(
-        "{:6}  {:21}  {:8}  {:9.1f}  {:10.2f}  {:8}  {:9}  {}\n", s->client, connection.address,
-        s->delivery == Delivery::unicast ? "unicast" : "shared", now() - it->second.began,
-        static_cast<double>(it->second.bytes + s->bytes) * 1e-6, it->second.updates + s->updates,
-        s->in_flight, connection.user.empty() ? "-" : connection.user);
+    text += fmt::format("{:6}  {:21}  {:8}  {:9.1f}  {:10.2f}  {:8}  {:9}  {:6}  {}\n", s->client,
+                        connection.address, s->delivery == Delivery::unicast ? "unicast" : "shared",
+                        now() - it->second.began,
+                        static_cast<double>(it->second.bytes + s->bytes) * 1e-6,
+                        it->second.updates + s->updates, s->in_flight,
+                        s->preset.empty() ? std::string_view("-") : s->preset,
+                        connection.user.empty() ? "-" : connection.user);
   }
   return text;
 }

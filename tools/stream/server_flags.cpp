@@ -73,7 +73,10 @@ void add_update_flags(tools::Command& app, ServerFlags& o) {
       ->allow(tools::one_of({"native", "zstd", "lz4", "raw"}))
       ->show_default()
       ->group(group);
-  app.add_option("--preset", o.server.settings.preset, "native: turbo, fast or strong")
+  app.add_option("--preset", o.preset,
+                 "native: turbo, fast or strong; auto: what delivers first to each client, or to "
+                 "those of shared packets, while updates are in time")
+      ->show_default()
       ->group(group);
   app.add_option("--chunk", o.server.settings.chunk,
                  "native: blocks per chunk at most, 1 to 4096; 0: by the size of the volume")

@@ -23,7 +23,7 @@ struct ServerFlags {
   TokenFlags token;
   ServiceOptions service;
   ServerOptions server;
-  std::string backend = "native";
+  std::string backend = "native", preset = "auto";
   std::uint32_t color_interval = 1, visibility_interval = 1, view_samples = 1024, view_margin = 1;
   float color_threshold = 0, visibility_threshold = 0;
   std::vector<std::string> max_error;

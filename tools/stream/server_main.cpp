@@ -255,6 +255,7 @@ Exit run(ServerFlags& o) {
          "--wait {} is for more clients than --max-clients {} lets in; change one of them",
          o.service.wait, o.max_clients);
   take_addresses(o);
+  if (o.preset != "auto") o.server.settings.preset = o.preset;
   o.service.statistics.json = o.format == "json";
   o.service.statistics.quiet = o.service.quiet;
   check_reports(o);

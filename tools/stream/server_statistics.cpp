@@ -200,6 +200,7 @@ ordered_json ServerStatistics::line(Server& server, double now) {
          {"in_flight_bytes", s->in_flight_bytes},
          {"pending", s->pending},
          {"update_bytes", s->update_bytes},
+         {"preset", s->preset},
          {"skipped", s->skipped},
          {"resyncs", s->resyncs}});
     connection.last = *s;

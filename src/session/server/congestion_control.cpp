@@ -1,6 +1,7 @@
 #include "session/server/congestion_control.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace gicodec {
@@ -71,6 +72,14 @@ void CongestionControl::acknowledged(const Sent& update, double now, double inte
   limited_ = update.limited;
   if (update.alone && update.empty) idle_ = -1;
   answered(latency, now);
+  // Updates arrive one after the other. Small ones say little.
+  const double began = std::max(update.made + idle_, std::exchange(acknowledged_, now));
+  constexpr std::uint64_t kMeasurable = 256;
+  if (update.bytes >= kMeasurable) {
+    constexpr double kWeight = 1.0 / 8;
+    update_bytes_ += kWeight * (static_cast<double>(update.bytes) - update_bytes_);
+    seconds_ += kWeight * (std::max(now - began, 0.0) - seconds_);
+  }
   if (update.made < changed_ || interval <= 0) return;
   const double queue = (latency - idle_) / interval;
   if (queue > kFull) {
@@ -93,6 +102,11 @@ void CongestionControl::acknowledged(const Sent& update, double now, double inte
   bytes_ = std::min(bytes_, kMax);
   starting_ = starting_ && queue <= kEmpty;
   changed_ = now;
+}
+
+double CongestionControl::throughput() const noexcept {
+  if (update_bytes_ == 0) return 0;
+  return seconds_ > 0 ? update_bytes_ / seconds_ : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace gicodec

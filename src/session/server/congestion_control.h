@@ -44,6 +44,9 @@ class CongestionControl {
   /// more and grow less, so that shares become even.
   void acknowledged(const Sent& update, double now, double interval, double mean) noexcept;
   [[nodiscard]] double bytes() const noexcept { return bytes_; }  ///< budget of an update
+  /// Bytes per second of recent updates while they were on their way, from the time at which an
+  /// empty one would have been acknowledged. 0: not known; infinity: they took no such time.
+  [[nodiscard]] double throughput() const noexcept;
 
  private:
   double first_, bytes_;     ///< the first budget, and the present one
@@ -51,9 +54,11 @@ class CongestionControl {
   double idle_at_ = 0;       ///< when idle_ was measured
   double changed_ = -1e300;  ///< when the budget changed; earlier updates say nothing about it
   std::uint64_t delivered_ = 0;
-  bool limited_ = false;  ///< Sent::limited of the last update acknowledged
-  bool starting_ = true;  ///< until the first sign of a queue
-  bool looking_ = false;  ///< no update until the idle path is measured
+  double acknowledged_ = -1e300;           ///< when the last update was
+  double update_bytes_ = 0, seconds_ = 0;  ///< recent means of updates, for throughput()
+  bool limited_ = false;                   ///< Sent::limited of the last update acknowledged
+  bool starting_ = true;                   ///< until the first sign of a queue
+  bool looking_ = false;                   ///< no update until the idle path is measured
 };
 
 }  // namespace gicodec

@@ -44,18 +44,24 @@ bool Bundle::outdated(std::span<const UpdateStream> streams, std::uint32_t block
 }
 
 Result<BackendEncoder*> Distributor::State::encoder(unsigned thread, const ServedTexture& texture,
-                                                    const UpdateStream& stream,
-                                                    BackendEncoder* own) {
+                                                    const UpdateStream& stream, BackendEncoder* own,
+                                                    std::size_t preset) {
   if (own != nullptr) return own;
   const ServedTexture* const of = texture.options.own_backend ? &texture : nullptr;
   auto& encoders = workers[thread].encoders;
-  for (const auto& one : encoders) {
-    if (one.texture == of && one.desc == stream.desc()) return one.encoder.get();
+  auto found = std::find_if(encoders.begin(), encoders.end(), [&](const auto& one) {
+    return one.texture == of && one.desc == stream.desc();
+  });
+  if (found == encoders.end()) {
+    auto made = texture.options.backend->make_encoder(stream.desc(), texture.options.settings);
+    if (!made) return made.status();
+    found = encoders.insert(encoders.end(), {of, stream.desc(), *std::move(made)});
   }
-  auto made = texture.options.backend->make_encoder(stream.desc(), texture.options.settings);
-  if (!made) return made.status();
-  encoders.push_back({of, stream.desc(), *std::move(made)});
-  return encoders.back().encoder.get();
+  if (texture.options.chooses_preset) {
+    const Status status = found->encoder->set_preset(kPresets[preset]);
+    if (status != Status::ok) return status;
+  }
+  return found->encoder.get();
 }
 
 /// Makes an encoder for each stream of a stateful texture; null for others.
@@ -201,6 +207,7 @@ Status Distributor::update() {
       client->held_back = false;
       client->written = client->examined = 0;
     }
+    state.choose_presets();
     Status first = Status::ok;
     const auto note = [&first](Status status) {
       if (first == Status::ok) first = status;

@@ -40,6 +40,7 @@ struct ClientState {
   std::uint64_t bytes_sent = 0, blocks_sent = 0, packets_sent = 0;
   std::uint32_t pending = 0;         ///< blocks that changed, are visible and were not sent yet
   std::uint32_t oldest_pending = 0;  ///< updates since the first of them changed
+  std::string_view preset = {};      ///< chosen for its packets; empty if no texture has a choice
 };
 
 /// One thread at a time. update() uses DistributorOptions::threads.
@@ -94,6 +95,10 @@ class Distributor {
   /// Limits the blocks of an update in snapshots and catch-ups of shared streams. One packet is
   /// always made. Clients beyond the limit wait. 0, the default: no limit.
   void set_limit_for_few(std::uint32_t blocks) noexcept;
+  /// Bytes per second that arrive at a client, by which its preset is chosen; 0: not known.
+  Status set_throughput(ClientId client, double throughput);
+  /// The last update took so many seconds, and may take `budget`: bounds the presets.
+  void report_update_time(double elapsed, double budget) noexcept;
   /// Makes the next packets for all clients and drops those of the last update. After an error
   /// (out_of_memory, or one of the backend) clients that could not be served have no packets and
   /// hold what they held; their blocks stay pending for the next update().

@@ -192,6 +192,10 @@ Result<ClientState> Distributor::state(ClientId client) const {
   const ServedClient* const found = state_->find(client);
   if (found == nullptr) return Status::unknown_connection;
   ClientState totals = found->totals;
+  if (state_->chooses_presets()) {
+    const bool unicast = found->delivery == Delivery::unicast;
+    totals.preset = kPresets[(unicast ? found->preset : state_->shared_preset).preset()];
+  }
   const auto updates = static_cast<std::uint32_t>(state_->updates);
   for (const UnicastBundle& unicast : found->unicast) {
     // pending_since is not up to date for blocks that the last update did not examine.

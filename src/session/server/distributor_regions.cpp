@@ -41,6 +41,7 @@ Status Distributor::State::update_region(ServedVolume& volume, Bundle& bundle, s
                                          unsigned thread) {
   SharedRegion& shared = bundle.regions[region];
   shared.written = shared.written_for_few = 0;
+  shared.costs = {};
   const auto served = [](const Lagging& lagging) { return lagging.subscribers.allotted; };
   if (shared.up_to_date.served == 0 && !shared.waiting.allotted &&
       std::none_of(shared.lagging.begin(), shared.lagging.end(), served)) {
@@ -100,11 +101,13 @@ Status Distributor::State::write(const Bundle& bundle, SharedRegion& shared, con
   std::vector<SharedPacket> packets;
   const auto blocks = next == nullptr ? std::span<const std::uint32_t>() : std::span(*next);
   const BlockMask missing = missing_of(shared, from, blocks);
+  const double share = static_cast<double>(subscribers.served) / shared_clients;
   written.resize(shared.streams.size());
   for (std::size_t i = 0; i < shared.streams.size(); ++i) {
     const UpdateStream& stream = shared.streams[i];
     const StreamState* const held = from == nullptr ? nullptr : &from->states[i];
-    const auto found = encoder(thread, *bundle.textures[i], stream, shared.encoders[i].get());
+    const auto found = encoder(thread, *bundle.textures[i], stream, shared.encoders[i].get(),
+                               shared_preset.preset());
     if (!found) return found.status();
     PacketWriter& writer = workers[thread].writer;
     const Status status =
@@ -113,6 +116,9 @@ Status Distributor::State::write(const Bundle& bundle, SharedRegion& shared, con
     if (status != Status::ok) return status;
     for (WrittenPacket& one : written[i].packets()) {
       const auto count = static_cast<std::uint32_t>(one.contents.blocks.size());
+      if (bundle.textures[i]->options.chooses_preset) {
+        shared.costs.add(stream.desc(), count, one.packet.size(), shared_preset.preset(), share);
+      }
       packets.push_back({bundle.textures[i]->id, one.sequence, is_keyframe(one.type),
                          std::make_shared<const Packet>(std::move(one.packet)), count});
     }
@@ -144,8 +150,9 @@ Status Distributor::State::advance(const ServedVolume& volume, const Bundle& bun
 
   // Allocates first, so that nothing can fail once there are packets.
   if (known) {
-    Lagging before{
-        .states = {}, .last_current = shared.last_current(updates - 1), .subscribers = {}};
+    Lagging before{.states = {},
+                   .last_current = shared.last_current(updates - 1),
+                   .subscribers = {.served = shared.up_to_date.served}};
     for (const UpdateStream& stream : shared.streams) before.states.push_back(stream.state());
     shared.lagging.push_back(std::move(before));
   }

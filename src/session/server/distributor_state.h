@@ -1,9 +1,10 @@
 // The state of a Distributor. distributor.cpp publishes and updates; _clients and _volumes have the
-// other calls; _interest finds pending blocks; _unicast and _regions write packets; _shared counts
-// subscribers and hands packets of regions out.
+// other calls; _interest finds pending blocks; _presets chooses presets; _unicast and _regions
+// write packets; _shared counts subscribers and hands packets of regions out.
 #pragma once
 
 #include "session/server/distributor.h"
+#include "session/server/preset_choice.h"
 #include "session/server/priority.h"
 #include "session/server/served_volume.h"
 #include "session/server/shared_rate.h"
@@ -84,6 +85,9 @@ struct ServedClient {
   std::vector<std::vector<std::vector<Subscription>>> subscriptions;
   float bytes_per_block = 0;   ///< unicast: recent mean; 0 before the first packet
   SharedRate rate;             ///< shared
+  double throughput = 0;       ///< see Distributor::set_throughput()
+  PresetChoice preset;         ///< unicast
+  PresetCosts costs;           ///< unicast: of the packets of the last update
   std::uint64_t written = 0;   ///< unicast: blocks in the packets of the last update
   std::uint64_t examined = 0;  ///< unicast: blocks examined to choose these
   bool held_back = false;      ///< see Distributor::held_back()
@@ -150,9 +154,11 @@ struct Reading {
 };
 
 struct Distributor::State {
-  /// The encoder of a stream: its own, or the thread's if that is null.
+  /// The encoder of a stream, set to `preset` if the texture has a choice: its own, or the thread's
+  /// if that is null.
   Result<BackendEncoder*> encoder(unsigned thread, const ServedTexture& texture,
-                                  const UpdateStream& stream, BackendEncoder* own);
+                                  const UpdateStream& stream, BackendEncoder* own,
+                                  std::size_t preset);
   Status make_encoders(const Bundle& bundle, std::span<const UpdateStream> streams,
                        std::vector<std::unique_ptr<BackendEncoder>>& out) const;
   /// The options of each texture, by texture id.
@@ -191,6 +197,8 @@ struct Distributor::State {
   }
   template <typename Visit>
   void for_each_subscription(ServedClient& client, const Visit& visit) noexcept;
+  void choose_presets();
+  [[nodiscard]] bool chooses_presets() const noexcept;  ///< of some texture
   void gather_subscribers() noexcept;
   void allot_catch_ups() noexcept;
   [[nodiscard]] std::vector<std::uint32_t> outdated_blocks(const ServedVolume& volume,
@@ -224,7 +232,11 @@ struct Distributor::State {
   std::map<ClientId, std::unique_ptr<ServedClient>> clients;
   ClientId next_client = 1;
   std::uint64_t updates = 0;
-  std::uint32_t limit_for_few = 0;    ///< 0: no limit
+  std::uint32_t limit_for_few = 0;  ///< 0: no limit
+  ProcessorTime time;
+  PresetChoice shared_preset;         ///< of the packets of regions
+  std::uint32_t shared_clients = 0;   ///< that are not suspended
+  std::vector<double> throughputs;    ///< of these
   std::vector<StreamWorker> workers;  ///< by thread
 };
 

@@ -79,8 +79,8 @@ Status Distributor::State::write_unicast(ServedClient& client, unsigned thread,
     const auto from = anew ? UpdateStream::From::keyframe : UpdateStream::From::sent;
     for (std::size_t i = 0; i < unicast.streams.size(); ++i) {
       UpdateStream& stream = unicast.streams[i];
-      const auto found =
-          encoder(thread, *unicast.bundle->textures[i], stream, unicast.encoders[i].get());
+      const auto found = encoder(thread, *unicast.bundle->textures[i], stream,
+                                 unicast.encoders[i].get(), client.preset.preset());
       if (!found) return found.status();
       const Status status =
           stream.write(from, p.blocks, **found, workers[thread].writer, p.written[i]);
@@ -162,12 +162,15 @@ Status Distributor::State::update_unicast(ServedClient& client, unsigned thread)
     UnicastBundle& unicast = client.unicast[p.bundle];
     for (const std::uint32_t block : p.blocks) unicast.pending_since[block] = 0;
     for (std::size_t i = 0; i < unicast.streams.size(); ++i) {
+      const ServedTexture& texture = *unicast.bundle->textures[i];
       unicast.streams[i].commit(p.written[i]);
-      const StreamId id{unicast.volume->id(), unicast.bundle->textures[i]->id,
-                        StreamId::kWholeVolume};
+      const StreamId id{unicast.volume->id(), texture.id, StreamId::kWholeVolume};
       for (WrittenPacket& written : p.written[i].packets()) {
         **next = std::move(written.packet);
         const auto blocks = static_cast<std::uint32_t>(written.contents.blocks.size());
+        if (texture.options.chooses_preset) {
+          client.costs.add(texture.history.desc(), blocks, (*next)->size(), client.preset.preset());
+        }
         client.out.push_back(
             {id, 0, blocks, written.sequence, is_keyframe(written.type), std::move(*next++)});
       }

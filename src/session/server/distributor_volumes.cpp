@@ -1,6 +1,7 @@
 // The volumes of a Distributor: their textures and options, geometry, and active blocks.
 #include <gicodec/error_bound.h>
 
+#include "backend/find_backend.h"
 #include "base/guard.h"
 #include "session/server/distributor_state.h"
 #include "session/server/region_size.h"
@@ -116,6 +117,8 @@ Result<std::vector<TextureOptions>> Distributor::State::texture_options(
       if (!encoder) return encoder.status();
       one.is_stateful = (*encoder)->is_stateful();
       one.is_lossy = (*encoder)->lossy();
+      one.chooses_preset =
+          one.backend == find_backend(kBackendNative) && one.settings.preset.empty();
       // Unicast clients would each hold other contents.
       if (one.is_lossy && any_unicast()) return Status::unsupported_backend;
     }

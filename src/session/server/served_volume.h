@@ -4,6 +4,7 @@
 
 #include <gicodec/protocol.h>
 
+#include "session/server/preset_choice.h"
 #include "session/server/priority.h"
 #include "stream/block_history.h"
 #include "stream/packet_writer.h"
@@ -47,6 +48,7 @@ struct SharedRegion {
   std::vector<Lagging> lagging;     ///< in the order of their sequences
   std::uint64_t written = 0;        ///< blocks in the packets of the last update
   std::uint64_t written_for_few = 0;  ///< of these, in packets for few clients
+  PresetCosts costs = {};             ///< of the packets of the last update
   SubscriberGroup up_to_date;         ///< hold the streams' state
   SubscriberGroup waiting;            ///< hold no known state
   // Where blocks depend on others:
@@ -66,6 +68,7 @@ struct SharedRegion {
 struct TextureOptions : StreamedTexture {
   bool own_backend = false;  ///< not the server's
   bool is_stateful = false, is_lossy = false;
+  bool chooses_preset = false;  ///< native, without a preset of the application's
 };
 
 struct ServedTexture {

@@ -237,6 +237,7 @@ std::optional<ConnectionStatistics> Server::statistics(ConnectionId connection) 
   if (const auto state = state_->distributor.state(statistics.client); state) {
     statistics.pending = state->pending + state_->distributor.pending_shared(statistics.client);
     statistics.oldest_pending = state->oldest_pending;
+    statistics.preset = state->preset;
     statistics.memory = state_->distributor.memory_of(statistics.client);
   }
   return statistics;

@@ -27,6 +27,7 @@ void Server::report_update_time(double elapsed, double budget) noexcept {
   if (!std::isfinite(elapsed) || !std::isfinite(budget) || budget <= 0) return;
   state_->set_limit_for_few(next_limit_for_few(state_->limit_for_few, state_->distributor.written(),
                                                std::max(elapsed, 0.0), budget));
+  state_->distributor.report_update_time(std::max(elapsed, 0.0), budget);
   // The time of making an update does not count as its delay.
   for (const auto& [id, connection] : state_->connections) {
     if (connection->in_flight.empty() || connection->in_flight.back().made != state_->updated)
@@ -117,6 +118,8 @@ void Server::State::choose_turn(Connection& connection, double now) noexcept {
   const auto bytes = connection.congestion.budget(now, oldest, s.in_flight_bytes, interval);
   const bool full = connection.in_flight.size() >= options.limits.max_in_flight;
   s.lagging = !bytes || full || s.in_flight_bytes >= options.limits.max_in_flight_bytes;
+  static_cast<void>(
+      distributor.set_throughput(connection.session->client, connection.congestion.throughput()));
   const bool may = fits_rate(connection, bytes.value_or(0), now);
   const bool waits = connection.session->unicast_limited && connection.session->unicast_blocks == 0;
   using Turn = Connection::Turn;
