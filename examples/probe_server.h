@@ -84,7 +84,7 @@ class ProbeServer {
     // Go on after an error: clients that got nothing this time get it with a later update.
     const Status made = server_.update(now, textures.time);
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
-    // Limits packets for single clients if time is short.
+    // If time is short: fewer packets for single clients, faster presets.
     server_.report_update_time(taken.count(), interval);
     deliver(now);
     return status == Status::ok ? made : status;

@@ -21,9 +21,9 @@ ServerOptions with_proofs(BackendSettings settings = {}) {
 /// Noise in half of the bits of some blocks; updates take as long as the test likes.
 class Presets : public PathToServer {
  public:
-  explicit Presets(std::size_t blocks = 64, const ServerOptions& options = with_proofs(),
+  explicit Presets(std::uint32_t blocks = 64, const ServerOptions& options = with_proofs(),
                    std::string_view backend = "native")
-      : PathToServer(1e9, options, 1000, backend) {
+      : PathToServer(1e9, options, 1000, backend), blocks_(blocks) {
     BlockMask active(kBlocks);
     std::fill_n(active.begin(), blocks, std::uint8_t{1});
     EXPECT_EQ(server().set_active(0, active), Status::ok);
@@ -48,9 +48,12 @@ class Presets : public PathToServer {
   void paint(Texture& texture, Random& random) override {
     constexpr std::byte kNoise[] = {std::byte{0x1F}, std::byte{0x7C}, std::byte{0xF0},
                                     std::byte{0x01}};
-    texture.fill(Fill::noise, random);
-    const auto bytes = texture.view().bytes;
-    for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] &= kNoise[i % 4];
+    for (std::uint32_t block = 0; block < blocks_; ++block) {
+      Bytes records = noise(random, guarded_bytes(texture.desc()));
+      for (std::size_t i = 0; i < records.size(); ++i) records[i] &= kNoise[i % 4];
+      texture.set_block(block, records);
+      texture.fill_band(block);
+    }
   }
   void after_update() override {
     server().report_update_time(seconds_, kInterval);
@@ -59,6 +62,7 @@ class Presets : public PathToServer {
       seen_.insert(server().statistics(connection)->preset);
   }
 
+  std::uint32_t blocks_;
   double seconds_ = 0.001;
   std::set<std::string_view> seen_;
 };
