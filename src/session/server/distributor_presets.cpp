@@ -13,12 +13,13 @@ Status Distributor::set_throughput(ClientId client, double throughput) {
 }
 
 void Distributor::report_update_time(double elapsed, double budget) noexcept {
-  double coded = 0;
-  for (const auto& [id, client] : state_->clients) {
-    coded += client->costs.seconds[client->preset.preset()];
-  }
+  ByPreset coded{};
+  const auto add = [&coded](const PresetCosts& costs, std::size_t preset) {
+    coded[preset] += costs.seconds[preset];
+  };
+  for (const auto& [id, client] : state_->clients) add(client->costs, client->preset.preset());
   state_->for_each_region([&](const ServedVolume&, const Bundle&, const SharedRegion& region) {
-    coded += region.costs.seconds[state_->shared_preset.preset()];
+    add(region.costs, state_->shared_preset.preset());
   });
   state_->time.report(elapsed, budget, coded);
 }

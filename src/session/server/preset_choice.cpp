@@ -1,6 +1,7 @@
 #include "session/server/preset_choice.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace gicodec {
 namespace {
@@ -9,7 +10,7 @@ namespace {
 /// does for them, and bytes by those of "fast".
 struct ModelCosts {
   Model model;
-  std::array<double, kPresets.size()> seconds, bytes;
+  ByPreset seconds, bytes;
 };
 constexpr std::array kCosts{
     ModelCosts{Model::none, {1.5e-9, 5e-9, 41e-9}, {1.4, 1, 0.97}},
@@ -32,10 +33,10 @@ static_assert(std::all_of(kCosts.begin(), kCosts.end(), in_order));
 constexpr double kWeight = 1.0 / 8;  ///< of an update in recent means
 
 /// The first of the presets up to `slowest` that delivers soonest.
-std::size_t best(const PresetCosts& costs, double throughput, double pace,
+std::size_t best(const PresetCosts& costs, double throughput, const ByPreset& pace,
                  std::size_t slowest) noexcept {
   const auto seconds = [&](std::size_t preset) {
-    return pace * costs.seconds[preset] + costs.bytes[preset] / throughput;
+    return pace[preset] * costs.seconds[preset] + costs.bytes[preset] / throughput;
   };
   std::size_t found = kTurbo;
   for (std::size_t preset = kTurbo + 1; preset <= slowest; ++preset) {
@@ -63,15 +64,25 @@ void PresetCosts::add(const PresetCosts& other) noexcept {
   }
 }
 
-void ProcessorTime::report(double elapsed, double budget, double coded) noexcept {
+/// Presets that are in use learn their pace soon; others forget it slowly, and are tried again.
+void ProcessorTime::learn(double elapsed, const ByPreset& coded) noexcept {
   constexpr double kMeasurable = 1e-4;  ///< seconds; less says little about coding
-  constexpr double kRoom = 0.5;         ///< of the budget: leaves time for a slower preset
-  constexpr std::uint32_t kMaxWait = 1024;
-  if (coded >= kMeasurable) {
-    const double weight = coded_ == 0 ? 1 : kWeight;
-    elapsed_ += weight * (elapsed - elapsed_);
-    coded_ += weight * (coded - coded_);
+  constexpr double kForget = 1.0 / 256, kMin = 1.0 / 8, kMax = 64;
+  const double all = std::accumulate(coded.begin(), coded.end(), 0.0);
+  if (all < kMeasurable) return;
+  const double pace = std::clamp(elapsed / all, kMin, kMax);
+  for (std::size_t i = 0; i < kPresets.size(); ++i) {
+    const double share = coded[i] / all;
+    const double weight = measured_[i] ? std::max(kWeight * share, kForget) : 1;
+    pace_[i] += weight * (pace - pace_[i]);
+    measured_[i] = measured_[i] || 2 * share > 1;
   }
+}
+
+void ProcessorTime::report(double elapsed, double budget, const ByPreset& coded) noexcept {
+  constexpr double kRoom = 0.5;  ///< of the budget: leaves time for a slower preset
+  constexpr std::uint32_t kMaxWait = 1024;
+  learn(elapsed, coded);
   ++in_time_;
   if (elapsed > budget) {
     if (slowest_ != kTurbo) wait_[slowest_] = std::min(2 * wait_[slowest_], kMaxWait);
@@ -86,12 +97,7 @@ void ProcessorTime::report(double elapsed, double budget, double coded) noexcept
   }
 }
 
-double ProcessorTime::pace() const noexcept {
-  constexpr double kMin = 1.0 / 8, kMax = 8;
-  return coded_ == 0 ? 1 : std::clamp(elapsed_ / coded_, kMin, kMax);
-}
-
-void PresetChoice::choose(const PresetCosts& last, double throughput, double pace,
+void PresetChoice::choose(const PresetCosts& last, double throughput, const ByPreset& pace,
                           std::size_t slowest) noexcept {
   constexpr double kMargin = 1.25;
   constexpr std::uint32_t kUpdates = 8;

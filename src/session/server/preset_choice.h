@@ -17,9 +17,11 @@ namespace gicodec {
 inline constexpr std::array<std::string_view, 3> kPresets{"turbo", "fast", "strong"};
 inline constexpr std::size_t kTurbo = 0, kFast = 1, kStrong = 2;
 
+using ByPreset = std::array<double, kPresets.size()>;
+
 /// What packets take, by preset: seconds of coding on a usual core, and bytes for each client.
 struct PresetCosts {
-  std::array<double, kPresets.size()> seconds{}, bytes{};
+  ByPreset seconds{}, bytes{};
 
   /// Adds a packet of so many blocks that took `size` bytes in `preset` and goes to this share of
   /// the clients.
@@ -31,10 +33,11 @@ struct PresetCosts {
 /// What the server has time for, by the times of its updates.
 class ProcessorTime {
  public:
-  /// An update took `elapsed` of `budget` seconds, and its packets `coded` by PresetCosts.
-  void report(double elapsed, double budget, double coded) noexcept;
+  /// An update took `elapsed` of `budget` seconds; `coded`: the seconds of PresetCosts of its
+  /// packets, by the preset that they have.
+  void report(double elapsed, double budget, const ByPreset& coded) noexcept;
   /// Seconds that coding takes here for one of PresetCosts.
-  [[nodiscard]] double pace() const noexcept;
+  [[nodiscard]] const ByPreset& pace() const noexcept { return pace_; }
   /// The slowest preset that there is time for: turbo after an update beyond its budget, then
   /// slower ones while updates leave time. Fast until there is a report.
   [[nodiscard]] std::size_t slowest() const noexcept { return slowest_; }
@@ -42,11 +45,14 @@ class ProcessorTime {
  private:
   static constexpr std::uint32_t kMinWait = 8;
 
+  void learn(double elapsed, const ByPreset& coded) noexcept;
+
   std::size_t slowest_ = kFast;
   std::uint32_t in_time_ = 0;  ///< updates within their budgets since `slowest_` changed
   /// Such updates before a preset is tried, longer after each time that it took too long.
   std::array<std::uint32_t, kPresets.size()> wait_{kMinWait, kMinWait, kMinWait};
-  double elapsed_ = 0, coded_ = 0;  ///< recent means
+  ByPreset pace_{1, 1, 1};
+  std::array<bool, kPresets.size()> measured_{};  ///< else a preset has the pace of others
 };
 
 /// The preset of a client's unicast packets, or of all shared ones.
@@ -56,7 +62,7 @@ class PresetChoice {
   /// Call before an update. `last`: the packets of the one before. `throughput`: bytes per second;
   /// 0: not known. A preset beyond `slowest` is left at once; else the preset changes after several
   /// updates in which another one is the best, also for a throughput higher or lower by a quarter.
-  void choose(const PresetCosts& last, double throughput, double pace,
+  void choose(const PresetCosts& last, double throughput, const ByPreset& pace,
               std::size_t slowest) noexcept;
 
  private:
