@@ -21,9 +21,7 @@ void check_backend(const ServerFlags& o, const FeedVolume& volume) {
     if (status == Status::invalid_settings) {
       fail(Exit::usage,
            "backend {} refuses{}: native takes --preset auto, turbo, fast or strong and --chunk up "
-           "to "
-           "4096, lz4 "
-           "--level -64 to 12, zstd -64 to 22, raw none of them",
+           "to 4096, lz4 --level -64 to 12, zstd -64 to 22, raw none of them",
            o.backend, tools::given_settings(o.server.settings));
     }
   }
