@@ -26,7 +26,8 @@ inline constexpr std::size_t kRowMargin = 72, kMaxRowValues = std::size_t{1} << 
 
 /// Blocks that a box may have to be one, at least 1.
 [[nodiscard]] std::uint32_t blocks_of_raster(const TextureDesc& desc) noexcept;
-/// Whether at least a quarter of the least box around the listed blocks is listed: rows code all of it.
+/// Whether at least a quarter of the least box around the listed blocks is listed: rows code all of
+/// it.
 [[nodiscard]] bool fills_rows(const Update& u, std::span<const std::uint32_t> positions);
 /// What a thread takes at most for a texture's rasters and what is kept of their texels.
 [[nodiscard]] std::uint64_t raster_memory(const TextureDesc& desc) noexcept;

@@ -15,7 +15,7 @@ struct ModelCosts {
 constexpr std::array kCosts{
     ModelCosts{Model::none, {1.5e-9, 5e-9, 41e-9}, {1.4, 1, 0.97}},
     ModelCosts{Model::stacked, {1.5e-9, 5e-9, 13e-9}, {1.3, 1, 0.98}},
-    ModelCosts{Model::continuous, {1.5e-9, 5e-9, 101e-9}, {2.2, 1, 0.85}},
+    ModelCosts{Model::continuous, {1.5e-9, 5e-9, 101e-9}, {1.6, 1, 0.85}},
     ModelCosts{Model::unordered, {51e-9, 51e-9, 101e-9}, {1, 1, 0.99}},
     ModelCosts{Model::octree, {51e-9, 51e-9, 101e-9}, {1, 1, 0.99}},
     ModelCosts{Model::hemispheres, {1.5e-9, 51e-9, 51e-9}, {1.4, 1, 0.99}},
