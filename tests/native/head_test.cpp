@@ -81,7 +81,9 @@ TEST(NativeHead, Repeats) {
     return make_update(desc, Content::shared, true, 1, 1);
   };
   const auto u = repeated(probe_texture(Format::R32G32_SFLOAT, {6, 4, 5}, 6, 1));
-  const Bytes payload = encode(u, {}, best_isa());
+  PayloadSettings settings;
+  settings.chunk.others = false;
+  const Bytes payload = encode(u, settings, best_isa());
   ASSERT_EQ(at(payload, kChunk) & 0x80, 0x80);
   expect_sound(u, payload);
   // Smaller than each plane on its own would be, of which three quarters are known.

@@ -1,5 +1,4 @@
-// Match chunks (docs/native/matches.md), and what strong is never larger than.
-#include "distinct_formats.h"
+// Match chunks (docs/native/matches.md), and what fast and strong are never larger than.
 #include "native/content.h"
 #include "native/matches/byte_order.h"
 #include "native/matches/match_chunk.h"
@@ -19,9 +18,9 @@ using test::Bytes;
 
 constexpr std::size_t kMayBeLarger = 64;
 
-std::size_t zstd_size(const Bytes& bytes) {
+std::size_t zstd_size(const Bytes& bytes, int level) {
   Bytes out(ZSTD_compressBound(bytes.size()));
-  return ZSTD_compress(out.data(), out.size(), bytes.data(), bytes.size(), 19);
+  return ZSTD_compress(out.data(), out.size(), bytes.data(), bytes.size(), level);
 }
 
 /// The records of an update in an order of a match chunk.
@@ -45,13 +44,13 @@ Bytes ordered(const test::UpdateCase& u, native::Difference difference, bool pla
   return out;
 }
 
-std::size_t best_of_zstd(const test::UpdateCase& u) {
+std::size_t best_of_zstd(const test::UpdateCase& u, int level) {
   std::size_t best = SIZE_MAX;
   for (unsigned d = 0; d < native::kDifferences; ++d) {
     const auto difference = static_cast<native::Difference>(d);
     if (difference == native::Difference::past && u.keyframe) continue;
     for (const bool planes : {false, true}) {
-      best = std::min(best, zstd_size(ordered(u, difference, planes)));
+      best = std::min(best, zstd_size(ordered(u, difference, planes), level));
     }
   }
   return best;
@@ -95,6 +94,24 @@ constexpr Poor kPoor[] = {
      [](auto r, auto, auto, const Bytes& n) {
        return number(n, 7919 * r) % 2 == 0 ? std::byte{3} : std::byte{255};
      }},
+    {"bytes of 16 values",
+     [](auto r, auto k, auto size, const Bytes& n) {
+       return static_cast<std::byte>(number(n, r * size + k) % 16 * 17);
+     }},
+    {"mostly small bytes",
+     [](auto r, auto k, auto size, const Bytes& n) {
+       const std::size_t i = r * size + k, x = number(n, i), y = number(n, 3 * i + 1);
+       return static_cast<std::byte>(x * y * y >> 16);
+     }},
+    {"a few records of noise",
+     [](auto r, auto k, auto size, const Bytes& n) {
+       return number(n, 7919 * r) < 8 ? at(n, r * size + k) : std::byte{0};
+     }},
+    {"noise with a few records of others",
+     [](auto r, auto k, auto size, const Bytes& n) {
+       const std::size_t from = number(n, 7919 * r) < 64 ? r * 5 / 8 : r;
+       return at(n, from * size + k);
+     }},
 };
 
 test::UpdateCase poor_update(const TextureDesc& desc, const Poor& poor, bool keyframe) {
@@ -117,27 +134,70 @@ std::vector<TextureDesc> shapes() {
           probe_texture(Format::R16G16_SFLOAT, {6, 6, 2}, 14, 0)};
 }
 
-TEST(NativeMatches, StrongIsNotLargerThanZstd) {
-  native::PayloadSettings strong;
-  strong.chunk.preset = native::Preset::strong;
+void expect_not_larger(native::Preset preset, int level) {
+  native::PayloadSettings settings;
+  settings.chunk.preset = preset;
   for (const TextureDesc& desc : shapes()) {
     for (const Poor& poor : kPoor) {
       for (const bool keyframe : {true, false}) {
         const auto u = poor_update(desc, poor, keyframe);
-        const Bytes payload = test::encode(u, strong, best_isa());
-        EXPECT_LE(payload.size(), best_of_zstd(u) + kMayBeLarger)
+        const Bytes payload = test::encode(u, settings, best_isa());
+        EXPECT_LE(payload.size(), best_of_zstd(u, level) + kMayBeLarger)
             << poor.name << ", blocks of " << int{desc.block.x} << ", records of "
-            << int{desc.record.bytes};
+            << int{desc.record.bytes} << (keyframe ? ", a keyframe" : "");
       }
     }
   }
 }
 
-TEST(NativeMatches, AreExact) {
+TEST(NativeMatches, StrongIsNotLargerThanZstd) { expect_not_larger(native::Preset::strong, 19); }
+
+TEST(NativeMatches, FastIsNotLargerThanZstd) { expect_not_larger(native::Preset::fast, 3); }
+
+/// Also where light or noise is made up, of few blocks and many.
+TEST(NativeMatches, FastIsNotLargerThanZstdOfMadeUpLight) {
+  using test::Content;
+  for (const Format format :
+       {Format::R8_UNORM, Format::R8G8B8_UNORM, Format::A2B10G10R10_UNORM_PACK32,
+        Format::R16G16_SFLOAT, Format::R16G16B16A16_SFLOAT, Format::R32G32B32A32_SFLOAT}) {
+    for (const Model model : {Model::stacked, Model::none}) {
+      TextureDesc desc = probe_texture(format, {6, 5, 4}, 6, 0);
+      desc.model = model;
+      for (const auto content : {Content::smooth, Content::noisy, Content::white, Content::constant,
+                                 Content::alternating, Content::shared}) {
+        for (const bool keyframe : {true, false}) {
+          const auto u = test::make_update(desc, content, keyframe, keyframe ? 1 : 3, 5);
+          const Bytes payload = test::encode(u, {}, best_isa());
+          EXPECT_LE(payload.size(), best_of_zstd(u, 3) + kMayBeLarger)
+              << desc << " content " << static_cast<int>(content)
+              << (keyframe ? ", a keyframe" : "");
+        }
+      }
+    }
+  }
+}
+
+/// Noise that comes twice, the second time far behind the first.
+TEST(NativeMatches, RepeatsAreFoundHoweverFar) {
+  TextureDesc desc = probe_texture(Format::R8G8B8A8_UNORM, {16, 16, 4}, 16, 0);
+  test::Random random(5);
+  const Bytes noise = test::noise(random, block_count(desc) * block_bytes(desc) / 2);
+  auto u = test::make_update(desc, test::Content::constant, true, 1, 1);
+  u.records = noise;
+  u.records.insert(u.records.end(), noise.begin(), noise.end());
+  for (const auto preset : {native::Preset::fast, native::Preset::strong}) {
+    native::PayloadSettings settings;
+    settings.chunk.preset = preset;
+    EXPECT_LE(test::encode(u, settings, best_isa()).size(), noise.size() + 512);
+  }
+}
+
+void expect_exact(native::Preset preset, std::span<const TextureDesc> descs) {
   native::PayloadSettings settings;
+  settings.chunk.preset = preset;
   settings.chunk.matches_within = 1 << 20;
   std::size_t matches = 0;
-  for (const TextureDesc& desc : shapes()) {
+  for (const TextureDesc& desc : descs) {
     for (const Poor& poor : kPoor) {
       for (const bool keyframe : {true, false}) {
         const auto u = poor_update(desc, poor, keyframe);
@@ -150,8 +210,13 @@ TEST(NativeMatches, AreExact) {
       }
     }
   }
-  EXPECT_GT(matches, 40U);
+  EXPECT_GT(matches, 10 * descs.size());
 }
+
+/// The smallest: strong takes time.
+TEST(NativeMatches, AreExact) { expect_exact(native::Preset::strong, std::vector{shapes()[1]}); }
+
+TEST(NativeMatches, QuickOnesAreExact) { expect_exact(native::Preset::fast, shapes()); }
 
 }  // namespace
 }  // namespace gicodec

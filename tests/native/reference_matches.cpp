@@ -21,9 +21,9 @@ class Source {
     Learned& l = bits_[{tree, a, b, node}];
     const bool one = in_.bit(static_cast<Word>(brought_into(l.q, 32, 65504)));
     const Number d = one ? 65535 - l.q : l.q;
-    const Number step = 2 * d / (2 * l.a + 3);
+    const Number step = (2 * d + 2 * l.a + 2) / (2 * l.a + 3);
     l.q += one ? step : -step;
-    l.a = std::min<Number>(l.a + 1, 126);
+    l.a = std::min<Number>(l.a + 1, 254);
     return one;
   }
   Number symbol(Tree tree, Number a, Number b, unsigned bits) {
@@ -89,9 +89,16 @@ std::optional<std::vector<std::vector<std::byte>>> decode_matches(
     }
     Number length = 0, distance = 0;
     if (in.bit(kIsLast, past, 0, 0)) {
-      distance = last[static_cast<std::size_t>(in.symbol(kWhich, 0, 0, 2))];
+      const Number which = in.symbol(kWhich, 0, 0, 3);
       length = 1 + in.number(kLength, 1);
       past = 2;
+      if (which > 4) return {};
+      if (which == 4) {
+        if (length > size - at) return {};
+        bytes.resize(static_cast<std::size_t>(at + length));
+        continue;
+      }
+      distance = last[static_cast<std::size_t>(which)];
     } else {
       length = 3 + in.number(kLength, 0);
       const Number rest = unit > 1 ? in.symbol(kRest, 0, 0, 5) : 0;

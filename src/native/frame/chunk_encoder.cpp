@@ -369,7 +369,7 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
   const bool by_rows = rows_pay(u, settings, positions);
   if (settings.matches_within != 0) {
     done = encode_matches(u, positions, texels, std::min(raw_size, settings.matches_within),
-                          w.matches, out);
+                          settings.preset == Preset::strong, w.matches, out);
   } else if (u.adaptive) {
     done = encode_adaptive(u, positions, texels, raw_size, w.models, out);
     if (by_rows && settings.others) tried(rows);

@@ -6,6 +6,7 @@
 #include "native/frame/chunk_head.h"
 #include "native/frame/statistics.h"
 #include "native/matches/match_chunk.h"
+#include "native/matches/match_look.h"
 #include "native/planes/steps.h"
 #include "native/tokens/token_head.h"
 
@@ -212,7 +213,9 @@ void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa i
                     PayloadMemory& memory, std::vector<std::byte>& out) {
   const std::size_t begin = out.size();
   encode(job, settings, isa, memory, out);
-  if (settings.chunk.preset != Preset::strong || !settings.chunk.others) return;
+  const EncodeSettings& wanted = settings.chunk;
+  const bool chosen = wanted.set >= 0 || wanted.lanes != 0 || wanted.observe || !wanted.others;
+  if (wanted.preset == Preset::turbo || chosen || job.blocks.empty()) return;
   const auto at = [&](std::size_t i) { return out.begin() + static_cast<std::ptrdiff_t>(i); };
   // Appends another payload and keeps the smaller.
   const auto try_as = [&](const PayloadSettings& other) {
@@ -223,11 +226,16 @@ void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa i
   };
   PayloadSettings other = settings;
   other.chunk.preset = Preset::fast;
-  try_as(other);
-  if (!takes_matches(job.desc)) return;
-  other.chunk.matches_within = out.size() - begin;
+  const bool strong = wanted.preset == Preset::strong;
+  if (strong) try_as(other);
+  if (!takes_matches(job.desc) || (!strong && !may_match(job, out.size() - begin))) return;
   other.box = large_box(job.desc);
-  try_as(other);
+  for (const Preset preset : {Preset::fast, wanted.preset}) {
+    other.chunk.preset = preset;
+    other.chunk.matches_within = out.size() - begin;
+    try_as(other);
+    if (!strong) return;
+  }
 }
 
 namespace {

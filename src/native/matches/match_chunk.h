@@ -21,9 +21,9 @@ inline constexpr std::uint8_t kMatchChunk = 10;
 [[nodiscard]] bool takes_matches(const TextureDesc& desc) noexcept;
 
 /// Appends a match chunk unless it would have more than `most` bytes; false then. Takes the order
-/// of bytes that a quick look finds best.
+/// of bytes that a quick look finds best. `thorough`: takes time to find matches.
 bool encode_matches(const Update& u, std::span<const std::uint32_t> positions,
-                    const BlockTable& texels, std::size_t most, MatchMemory& memory,
+                    const BlockTable& texels, std::size_t most, bool thorough, MatchMemory& memory,
                     std::vector<std::byte>& out);
 Status decode_matches(const Update& u, std::span<const std::uint32_t> positions,
                       std::span<const std::byte> bytes, std::span<std::byte> texels,

@@ -33,14 +33,18 @@ Status decode_matches(const Update& u, std::span<const std::uint32_t> positions,
       ++done;
       continue;
     }
-    if (match.distance == 0 || match.distance > done || match.length > size - done)
+    if (match.distance > done || match.length > size - done)
       return coder.overrun() ? Status::truncated : Status::corrupt;
-    from.seek(done - static_cast<std::size_t>(match.distance));
+    done += match.length;
+    if (match.distance == 0) {
+      for (std::uint32_t i = 0; i < match.length; ++i) store(0);
+      continue;
+    }
+    from.seek(done - match.length - static_cast<std::size_t>(match.distance));
     for (std::uint32_t i = 0; i < match.length; ++i) {
       store(from.difference());
       from.step();
     }
-    done += match.length;
   }
   if (coder.overrun()) return Status::truncated;
   return coder.ended() ? Status::ok : Status::corrupt;

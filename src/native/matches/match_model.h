@@ -1,6 +1,7 @@
 // How literals, lengths and distances are coded, in both directions (docs/native/matches.md).
 #pragma once
 
+#include "base/memory.h"
 #include "native/matches/bit_tree.h"
 #include "native/matches/byte_order.h"
 
@@ -8,7 +9,6 @@
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <vector>
 
 namespace gicodec::native {
 
@@ -49,15 +49,17 @@ enum class Literals : std::uint8_t {
 };
 inline constexpr unsigned kLiterals = 4;
 
-/// What a stream says: a length of 0 is a literal.
+/// What a stream says: a length of 0 is a literal, a distance of 0 means zeros.
 struct CodedMatch {
   std::uint32_t length = 0;
   std::uint64_t distance = 0;
 };
+inline constexpr std::uint64_t kNoDistance = UINT64_MAX;  ///< of what no encoder writes
 
 inline constexpr std::uint32_t kMinMatch = 3;  ///< of new distances
 inline constexpr unsigned kLastDistances = 4;
-inline constexpr std::size_t kByteContexts = 32;  ///< of bytes of records
+inline constexpr unsigned kZeros = kLastDistances;  ///< instead of the number of a last distance
+inline constexpr std::size_t kByteContexts = 32;    ///< of bytes of records
 
 /// The distances that were used last, the last first.
 class LastDistances {
@@ -87,7 +89,7 @@ class LastDistances {
 class MatchModel {
  public:
   /// `trees`: memory for those of literals.
-  MatchModel(Literals literals, const Distances& distances, std::vector<BitTree<8>>& trees)
+  MatchModel(Literals literals, const Distances& distances, Vector<BitTree<8>>& trees)
       : literals_(literals),
         unit_(distances.unit > kLargestUnit ? 1 : static_cast<std::uint32_t>(distances.unit)),
         last_(distances),
@@ -104,11 +106,14 @@ class MatchModel {
       after_ = 0;
       return {};
     }
-    const unsigned known = last_.find(match.distance);
-    const bool repeats = repeats_[after_].code(coder, known < kLastDistances);
+    const unsigned known = match.distance == 0 ? kZeros : last_.find(match.distance);
+    const bool repeats =
+        repeats_[after_].code(coder, match.distance == 0 || known < kLastDistances);
+    after_ = repeats ? 2 : 1;
     if (repeats) {
-      match.distance = last_[which_.code(coder, known)];
+      const unsigned which = which_.code(coder, known);
       match.length = 1 + length_[1].code(coder, match.length - 1);
+      match.distance = which < kLastDistances ? last_[which] : which == kZeros ? 0 : kNoDistance;
     } else {
       match.length = kMinMatch + length_[0].code(coder, match.length - kMinMatch);
       const std::uint32_t of = std::min(match.length - kMinMatch, kLengths - 1);
@@ -116,9 +121,9 @@ class MatchModel {
       auto rest = static_cast<std::uint32_t>(match.distance % unit_);
       if (unit_ > 1) rest = rest_.code(coder, rest);
       match.distance = std::uint64_t{distance_[of].code(coder, units)} * unit_ + rest;
+      if (match.distance == 0) match.distance = kNoDistance;
     }
-    last_.use(match.distance);
-    after_ = repeats ? 2 : 1;
+    if (match.distance != 0) last_.use(match.distance);
     return match;
   }
   /// `before`: the byte before, or 0.
@@ -148,10 +153,10 @@ class MatchModel {
   std::uint32_t unit_;  // distances are multiples of it, most of all
   unsigned after_ = 0;  // a literal, a match of a new distance, of a last one
   LastDistances last_;
-  std::vector<BitTree<8>>& trees_;
+  Vector<BitTree<8>>& trees_;
   std::array<std::array<MatchBit, kByteContexts>, 3> is_match_;
   std::array<MatchBit, 3> repeats_;
-  BitTree<2> which_;
+  BitTree<3> which_;
   std::array<MatchNumber, 2> length_;
   std::array<MatchNumber, kLengths> distance_;
   BitTree<kUnitBits> rest_;
