@@ -36,8 +36,8 @@ RC_GTEST_PROP(GuardBandSection, WriteAndReadAreInverse, (std::uint64_t seed)) {
   }
   mirror.make_room(held);
   const auto bytes = noise(random, total * block_bytes(desc));
-  Vector<std::byte> records(bytes.begin(), bytes.end());
-  mirror.commit(true, all, records, {}, held);
+  Vector<std::byte> held_records(bytes.begin(), bytes.end());
+  mirror.commit(true, all, held_records, {}, held);
 
   Blocks update = random_selection(random, total);
   if (update.empty()) update = {pick(random, 0, total - 1)};
