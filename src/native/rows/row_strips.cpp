@@ -75,10 +75,13 @@ RowStrip prepare_strips(bool update, RowMemory& memory) {
     for (auto* lanes : {&memory.past_lanes[k], &memory.past_above[k]}) {
       if (update) make_room(planes, *lanes);
     }
-    to.slice = memory.slice[k].data() + kLanes;
-    to.slice_above = memory.slice_above[k].data() + kLanes;
-    to.past = memory.past_lanes[k].data() + kLanes;
-    to.past_above = memory.past_above[k].data() + kLanes;
+    const auto behind_first = [](auto& lanes) {
+      return lanes.empty() ? nullptr : lanes.data() + kLanes;
+    };
+    to.slice = behind_first(memory.slice[k]);
+    to.slice_above = behind_first(memory.slice_above[k]);
+    to.past = behind_first(memory.past_lanes[k]);
+    to.past_above = behind_first(memory.past_above[k]);
     memory.above[k].assign(kRowTrail * above, 0);
     to.values = memory.lanes[k].data();
     to.above = memory.above[k].data();

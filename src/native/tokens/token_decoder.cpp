@@ -78,7 +78,7 @@ Status decode_tokens(const Update& u, std::span<const std::uint32_t> positions, 
   const std::size_t n = positions.size(), texels = blocks.texels();
   const std::size_t all = n * texels + head.streams * kTokenSlack;
   memory.tokens.resize(groups.count * all + kTokenSlack);
-  memory.unit_tokens.resize(texels + kUnit);
+  memory.unit_tokens.resize(texels + kUnit + kTokenSlack);
   memory.raw.clear();
   std::array<GroupSource, kMaxGroups> sources{};
   for (unsigned g = 0; g < groups.count; ++g) {
