@@ -59,7 +59,8 @@ bool repeats_pay(const Update& u, std::span<const std::uint32_t> positions,
   constexpr std::uint32_t kSampled = 64;
   const std::size_t size = u.layout.texel_bytes;
   if (!u.neighbours() || u.partial() || u.layout.pairs || size < kLongRecord) return false;
-  if (positions.size() <= kFewBlocks) return false;
+  constexpr std::size_t kFewTexels = 4096;
+  if (positions.size() * u.texels() <= kFewTexels) return false;
   chunk.build(u.desc.grid, u.box, u.probes, positions, u.mirrored ? &u.mirror : nullptr, kLanes);
   const auto records = [&](std::int32_t block) {
     const auto& b = chunk.blocks[static_cast<std::size_t>(block)];

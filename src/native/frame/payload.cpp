@@ -228,7 +228,8 @@ void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa i
   other.chunk.preset = Preset::fast;
   const bool strong = wanted.preset == Preset::strong;
   if (strong) try_as(other);
-  if (!takes_matches(job.desc) || (!strong && !may_match(job, out.size() - begin))) return;
+  if (!takes_matches(job.desc) || (!strong && !may_match(job, out.size() - begin, memory.look)))
+    return;
   other.box = large_box(job.desc);
   for (const Preset preset : {Preset::fast, wanted.preset}) {
     other.chunk.preset = preset;

@@ -3,6 +3,7 @@
 
 #include "base/memory.h"
 #include "native/frame/chunk_encoder.h"
+#include "native/matches/match_look.h"
 
 #include <vector>
 
@@ -27,6 +28,7 @@ struct PayloadMemory {
   ChunkLists lists;
   Vector<std::uint16_t> block_values;          ///< encoding: of one block at a time
   std::vector<std::vector<std::byte>> chunks;  ///< encoding
+  LookMemory look;                             ///< encoding
   PayloadHead head;                            ///< decoding, as what follows
   Vector<Status> status;                       ///< of each chunk
   ChunkHead chunk_head;                        ///< of one chunk at a time

@@ -30,10 +30,12 @@ constexpr auto kSaved = [] {
 class Look {
  public:
   /// Precondition: 1 to kMostLooks looks, at most those that there are.
-  Look(const EncodeJob& job, std::size_t looks) noexcept : job_(job), looks_(looks) {
+  Look(const EncodeJob& job, std::size_t looks, LookMemory& memory)
+      : job_(job), looks_(looks), memory_(memory) {
     const std::size_t records = per_block_ * job.blocks.size();
     const auto bits = static_cast<unsigned>(std::bit_width(2 * looks_));
-    std::fill_n(seen_.begin(), std::size_t{1} << bits, Seen{});
+    memory.seen.assign(std::size_t{1} << bits, {});
+    memory.times.assign(kDifferences * bytes_ * kValues, 0);
     const std::uint64_t stride = (std::uint64_t{records} << 16) / looks_;
     std::uint32_t noise = 1;
     for (std::size_t i = 0; i < looks_; ++i) {
@@ -43,7 +45,7 @@ class Look {
       const std::uint64_t word = see(record);
       if (word == kNear) continue;
       const std::uint64_t hash = word * 0x9E3779B97F4A7C15U;
-      Seen& seen = seen_[static_cast<std::size_t>(hash >> (64 - bits))];
+      LookMemory::Seen& seen = memory.seen[static_cast<std::size_t>(hash >> (64 - bits))];
       if (seen.word == word) {
         ++again_;
         if (record + 2 < records && word_of(record + 1) == word_of(seen.record + 1) &&
@@ -72,7 +74,7 @@ class Look {
 
  private:
   static constexpr std::uint64_t kNear = 0;
-  using Counts = std::array<std::array<std::uint8_t, 256>, kMostBytes>;
+  static constexpr std::size_t kValues = 256;
 
   /// Up to eight bytes of a record, from byte `at` of the block on.
   [[nodiscard]] std::uint64_t word_at(const std::byte* block, std::size_t at) const noexcept {
@@ -116,7 +118,7 @@ class Look {
     for (const std::size_t end = std::min(bytes_, k + kWord); k < end; ++k, word >>= 8) {
       for (unsigned d = 0; d < kDifferences; ++d) {
         const std::uint64_t from = other[d] >> 8 * (k % kWord);
-        auto& times = counts_[d][k][(word - from) & 255];
+        auto& times = memory_.times[(d * bytes_ + k) * kValues + ((word - from) & 255)];
         sums_[d][k].equal += times;
         sums_[d][k].saved += kSaved[times++];
       }
@@ -133,33 +135,27 @@ class Look {
       return std::min(8 * kBit, std::max(equal == 0 ? 8 * kBit : pairs - log2_of(equal), shown));
     }
   };
-  struct Seen {
-    std::uint64_t word = kNear;
-    std::size_t record = 0;
-  };
-
   const EncodeJob& job_;
   std::size_t size_ = job_.desc.record.bytes, per_block_ = record_count(job_.desc.block);
   std::size_t block_ = size_ * per_block_, row_ = size_ * job_.desc.block.x;
   std::size_t bytes_ = std::min(size_, kMostBytes);
   std::size_t looks_;
+  LookMemory& memory_;
   std::uint64_t fresh_ = 0, again_ = 0, long_ = 0;
   unsigned counted_ = 0;
-  std::array<Seen, 4 * kMostLooks> seen_;
-  std::array<Counts, kDifferences> counts_{};
   std::array<std::array<Sum, kMostBytes>, kDifferences> sums_{};
 };
 
 }  // namespace
 
-bool may_match(const EncodeJob& job, std::size_t size) noexcept {
+bool may_match(const EncodeJob& job, std::size_t size, LookMemory& memory) {
   constexpr std::size_t kFew = 72;  // bytes, of which nothing can be saved that matters
   if (size <= kFew) return false;
   const std::size_t records = record_count(job.desc.block) * job.blocks.size();
   const std::uint64_t all = std::uint64_t{records} * job.desc.record.bytes;
   const bool poor = 2 * size >= all;
   const std::size_t fewest = std::min<std::size_t>(records, poor ? 128 : 32);
-  const Look look(job, std::clamp(records / (poor ? 8 : 32), fewest, kMostLooks));
+  const Look look(job, std::clamp(records / (poor ? 8 : 32), fewest, kMostLooks), memory);
   const std::uint64_t looks = look.looks(), fresh = look.fresh(), again = look.again();
   // Little is fresh: ordinary chunks have a head.
   if (32 * fresh <= looks && (job.keyframe || 2 * again >= fresh)) return true;
