@@ -160,9 +160,9 @@ TEST(Memory, ChangesOfThePresetKeepToTheBound) {
       auto encoder = *Encoder::create(desc);
       (void)encoder.set_presence(presence);
       Packet packet;
-      for (const char* preset : {"turbo", "strong", "fast", "turbo"}) {
+      for (const char* preset : {"turbo", "strong", "fast"}) {
         (void)encoder.set_preset(preset);
-        for (const auto& frame : frames) {
+        for (const auto& frame : std::span(frames).first(2)) {
           (void)encoder.encode_to(std::as_const(*frame).view(), Selection::all(), packet);
           size = std::max(size, packet.capacity());
         }

@@ -223,9 +223,10 @@ TEST(CodecFaultsOverrides, LeaveWholeTables) {
   for (std::uint32_t block = 0; block < block_count(desc); ++block) {
     std::vector<std::byte> records = texture.block(block);
     for (std::size_t i = 0; i < records.size(); i += 4) {
+      const std::size_t slope = i / 4 % 6 * (block % 13) + i / 24 * (block % 9);
       std::uint32_t word = 0;
       for (unsigned c = 0; c < 3; ++c) {
-        word = word << 10 | static_cast<std::uint32_t>(2 * block + random() % 12 * 37);
+        word = word << 10 | static_cast<std::uint32_t>(2 * block + slope + random() % 2 * 7);
       }
       std::memcpy(&records[i], &word, sizeof word);
     }

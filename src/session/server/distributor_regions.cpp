@@ -150,9 +150,9 @@ Status Distributor::State::advance(const ServedVolume& volume, const Bundle& bun
 
   // Allocates first, so that nothing can fail once there are packets.
   if (known) {
-    Lagging before{.states = {},
-                   .last_current = shared.last_current(updates - 1),
-                   .subscribers = {.served = shared.up_to_date.served}};
+    Lagging before{
+        .states = {}, .last_current = shared.last_current(updates - 1), .subscribers = {}};
+    before.subscribers.served = shared.up_to_date.served;
     for (const UpdateStream& stream : shared.streams) before.states.push_back(stream.state());
     shared.lagging.push_back(std::move(before));
   }
