@@ -7,7 +7,7 @@
 namespace gicodec::bench {
 
 std::vector<Case> cases(Isa isa) {
-  std::vector<Case> all = {{.label = "raw", .backend = "raw", .difference = false},
+  std::vector<Case> all = {{.label = "raw", .backend = "raw", .preset = {}, .difference = false},
                            {"lz4, acceleration 16", "lz4", "", -16},
                            {"lz4, acceleration 4", "lz4", "", -4},
                            {"lz4 -1", "lz4", "", 1},

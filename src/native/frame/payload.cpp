@@ -228,15 +228,14 @@ void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa i
   other.chunk.preset = Preset::fast;
   const bool strong = wanted.preset == Preset::strong;
   if (strong) try_as(other);
-  if (!takes_matches(job.desc) || (!strong && !may_match(job, out.size() - begin, memory.look)))
-    return;
+  if (!takes_matches(job.desc) || !may_match(job, out.size() - begin, strong, memory.look)) return;
   other.box = large_box(job.desc);
-  for (const Preset preset : {Preset::fast, wanted.preset}) {
-    other.chunk.preset = preset;
-    other.chunk.matches_within = out.size() - begin;
-    try_as(other);
-    if (!strong) return;
-  }
+  other.chunk.matches_within = out.size() - begin;
+  try_as(other);
+  if (!strong) return;
+  other.chunk.preset = Preset::strong;
+  other.chunk.matches_within = out.size() - begin;
+  try_as(other);
 }
 
 namespace {

@@ -148,7 +148,7 @@ class Look {
 
 }  // namespace
 
-bool may_match(const EncodeJob& job, std::size_t size, LookMemory& memory) {
+bool may_match(const EncodeJob& job, std::size_t size, bool thorough, LookMemory& memory) {
   constexpr std::size_t kFew = 72;  // bytes, of which nothing can be saved that matters
   if (size <= kFew) return false;
   const std::size_t records = record_count(job.desc.block) * job.blocks.size();
@@ -162,6 +162,7 @@ bool may_match(const EncodeJob& job, std::size_t size, LookMemory& memory) {
   // A sample shows few of the repeats from afar. They matter where all else is noise.
   constexpr std::uint64_t kLittle = 1U << 14;
   const bool many = 16 * again >= looks && (6 * size >= all || all <= kLittle);
+  if (thorough && 2 * again >= looks) return true;
   if (again >= 3 && (many || 4 * size >= 3 * all)) return true;
   // The bytes of fresh records, or distances to where they were; and which are fresh.
   constexpr std::uint64_t kFar = 16 * kBit, kLong = kBit / 4;
@@ -172,7 +173,9 @@ bool may_match(const EncodeJob& job, std::size_t size, LookMemory& memory) {
     if (some != 0) bits += some * static_cast<std::uint64_t>(log2_of(looks) - log2_of(some));
   }
   // What a sample of noise shows is a little less than noise.
-  const std::uint64_t most = std::min<std::uint64_t>(size + size / 32, all - all / 32);
+  const std::size_t more = thorough ? size / 4 : 0;
+  const std::uint64_t most =
+      std::min<std::uint64_t>(size + more + (size + more) / 32, all - all / 32);
   return bits * records / looks / (8 * kBit) <= most;
 }
 

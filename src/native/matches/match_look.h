@@ -22,6 +22,8 @@ struct LookMemory {
 };
 
 /// Whether they may have fewer than `size` bytes: looks at some records, in microseconds.
-[[nodiscard]] bool may_match(const EncodeJob& job, std::size_t size, LookMemory& memory);
+/// `thorough`: what is searched for thoroughly takes less than what the look expects.
+[[nodiscard]] bool may_match(const EncodeJob& job, std::size_t size, bool thorough,
+                             LookMemory& memory);
 
 }  // namespace gicodec::native

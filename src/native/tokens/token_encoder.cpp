@@ -11,8 +11,8 @@
 namespace gicodec::native {
 namespace {
 
-/// Blocks by which predictions are chosen, and texels of them.
-constexpr std::size_t kSampledBlocks = 24, kSampledTexels = 4096;
+/// Blocks by which predictions are chosen, one of so many, and texels of them.
+constexpr std::size_t kSampledBlocks = 24, kSampledOf = 8, kSampledTexels = 4096;
 /// Tokens from which on only every fourth block is counted.
 constexpr std::size_t kManyTokens = 16384;
 constexpr std::uint32_t kCountScale = 4;
@@ -119,8 +119,8 @@ class TokenEncoder {
   }
   void choose_prediction(TokenGroup& group) {
     const std::size_t n = positions_.size();
-    const std::size_t sampled =
-        std::clamp<std::size_t>(kSampledTexels / texels(), 1, std::min(kSampledBlocks, n));
+    const std::size_t sampled = std::clamp<std::size_t>(
+        std::min(kSampledTexels / texels(), n / kSampledOf), 1, std::min(kSampledBlocks, n));
     std::array<Counts, 2 * kTokenPredictions> counts{};
     grow(memory_.streams, texels() + kTokenSlack);
     grow(memory_.raw, texels() * kMaxRawBytes + kRawSlack);
