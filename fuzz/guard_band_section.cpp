@@ -13,7 +13,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto blocks = input.blocks(desc);
   fuzz::Exact records(blocks.size() * block_bytes(desc)), old(records.span().size(), 1);
   Mirror mirror(desc);
-  mirror.commit(false, blocks, old.span(), {}, {});
+  Vector<std::byte> held(old.span().begin(), old.span().end());
+  mirror.commit(false, blocks, held, {}, {});
   const StaleBands before;
   const BlockTable table{records.span().data(), block_bytes(desc)};
   const GuardBandContext context{desc, keyframe, blocks, table, mirror.blocks(), before};
