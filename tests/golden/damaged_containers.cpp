@@ -202,7 +202,7 @@ void bad_indices() {
   save("bad_index_place.gic", file(0, {{0, at}, {1, step}}, part - 1));
   save("index_texture.gic", file(0, {{0, at, 1}, {1, step}}, part));
   save("index_flags.gic", file(0, {{0, at, 0, 3}, {1, step}}, part));
-  // Sound, but of other packets: found by whoever follows it.
+  // Sound, but of other packets: the next packet finds it.
   save("index_frame.gic", file(0, {{0, at}, {2, step}}, part));
   save("index_keyframe.gic", file(0, {{0, at}, {1, step, 0, 0}}, part));
 }

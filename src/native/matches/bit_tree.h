@@ -11,7 +11,7 @@ namespace gicodec::native {
 
 /// A bit whose probability follows its past.
 struct MatchBit {
-  static constexpr std::uint32_t kMin = 1U << (kBitScale - 11), kMostAsked = 254;
+  static constexpr std::uint32_t kMin = 1U << (kBitScale - 11), kMaxAsked = 254;
   std::uint16_t one = 1U << (kBitScale - 1);
   std::uint8_t asked = 0;
 
@@ -22,7 +22,7 @@ struct MatchBit {
     const std::uint32_t off = bit ? kAll - 1 - one : one;
     const std::uint32_t step = (2 * off + 2 * asked + 2U) / (2 * asked + 3U);
     one = static_cast<std::uint16_t>(bit ? one + step : one - step);
-    if (asked < kMostAsked) ++asked;
+    if (asked < kMaxAsked) ++asked;
     return bit;
   }
 };

@@ -55,9 +55,9 @@ class Writer {
 bool encode_matches(const Update& u, std::span<const std::uint32_t> positions,
                     const BlockTable& texels, std::size_t most, bool thorough, MatchMemory& memory,
                     std::vector<std::byte>& out) {
-  constexpr std::size_t kMostBytes = 1U << 30;  // numbers, and places
-  constexpr std::size_t kLittle = 1U << 17;     // which takes little time to parse well
-  if (!takes_matches(u.desc) || positions.size() * u.block_bytes() > kMostBytes) return false;
+  constexpr std::size_t kMaxBytes = 1U << 30;  // numbers, and places
+  constexpr std::size_t kLittle = 1U << 17;    // which takes little time to parse well
+  if (!takes_matches(u.desc) || positions.size() * u.block_bytes() > kMaxBytes) return false;
   const Orders orders = find_orders(u, positions, texels, most, thorough, memory);
   const std::size_t begin = out.size();
   std::size_t smallest = most + 1;

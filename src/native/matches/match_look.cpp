@@ -11,17 +11,17 @@
 namespace gicodec::native {
 namespace {
 
-constexpr std::size_t kMostLooks = 1024;
-constexpr std::size_t kMostBytes = 16;  ///< of a record that are counted
+constexpr std::size_t kMaxLooks = 1024;
+constexpr std::size_t kMaxBytes = 16;  ///< of a record that are counted
 constexpr std::size_t kWord = sizeof(std::uint64_t);
-constexpr unsigned kFewCounted = 64, kMostCounted = 255;  ///< records whose bytes are counted
+constexpr unsigned kFewCounted = 64, kMaxCounted = 255;  ///< records whose bytes are counted
 
 /// What all bytes of a value save when one more is counted, n·log(n) in sum; but for Miller and
 /// Madow's term, since few samples show too little.
 constexpr auto kSaved = [] {
-  std::array<Price, kMostCounted> saved{};
+  std::array<Price, kMaxCounted> saved{};
   const auto sum = [](std::uint64_t n) { return n == 0 ? 0 : static_cast<Price>(n) * log2_of(n); };
-  for (unsigned n = 0; n < kMostCounted; ++n) saved[n] = sum(n + 1) - sum(n);
+  for (unsigned n = 0; n < kMaxCounted; ++n) saved[n] = sum(n + 1) - sum(n);
   saved[0] -= kBit * 72 / 100;
   return saved;
 }();
@@ -29,7 +29,7 @@ constexpr auto kSaved = [] {
 /// Looks at some records, spread over all. Fresh ones are not that before, that above or the past.
 class Look {
  public:
-  /// Precondition: 1 to kMostLooks looks, at most those that there are.
+  /// Precondition: 1 to kMaxLooks looks, at most those that there are.
   Look(const EncodeJob& job, std::size_t looks, LookMemory& memory)
       : job_(job), looks_(looks), memory_(memory) {
     const std::size_t records = per_block_ * job.blocks.size();
@@ -106,7 +106,7 @@ class Look {
     const Words other = others(index, now, at);
     if (std::find(other.begin(), other.end(), word) != other.end()) return kNear;
     ++fresh_;
-    if (counted_ >= kMostCounted) return word;
+    if (counted_ >= kMaxCounted) return word;
     ++counted_;
     for (std::size_t k = 0; k < bytes_; k += kWord) {
       count(k, word_at(now, at + k), others(index, now, at + k));
@@ -138,12 +138,12 @@ class Look {
   const EncodeJob& job_;
   std::size_t size_ = job_.desc.record.bytes, per_block_ = record_count(job_.desc.block);
   std::size_t block_ = size_ * per_block_, row_ = size_ * job_.desc.block.x;
-  std::size_t bytes_ = std::min(size_, kMostBytes);
+  std::size_t bytes_ = std::min(size_, kMaxBytes);
   std::size_t looks_;
   LookMemory& memory_;
   std::uint64_t fresh_ = 0, again_ = 0, long_ = 0;
   unsigned counted_ = 0;
-  std::array<std::array<Sum, kMostBytes>, kDifferences> sums_{};
+  std::array<std::array<Sum, kMaxBytes>, kDifferences> sums_{};
 };
 
 }  // namespace
@@ -155,7 +155,7 @@ bool may_match(const EncodeJob& job, std::size_t size, bool thorough, LookMemory
   const std::uint64_t all = std::uint64_t{records} * job.desc.record.bytes;
   const bool poor = 2 * size >= all;
   const std::size_t fewest = std::min<std::size_t>(records, poor ? 128 : 32);
-  const Look look(job, std::clamp(records / (poor ? 8 : 32), fewest, kMostLooks), memory);
+  const Look look(job, std::clamp(records / (poor ? 8 : 32), fewest, kMaxLooks), memory);
   const std::uint64_t looks = look.looks(), fresh = look.fresh(), again = look.again();
   // Little is fresh: ordinary chunks have a head.
   if (32 * fresh <= looks && (job.keyframe || 2 * again >= fresh)) return true;

@@ -3,8 +3,6 @@
 #include "native/matches/quick_parser.h"
 
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
 #include <limits>
 
 namespace gicodec::native {
@@ -84,8 +82,8 @@ QuickLook look_quickly(ByteOrder order, const Distances& distances, std::size_t 
 void Orders::add(const One& one) {
   std::size_t at = 0;
   while (at < count && best[at].price <= one.price) ++at;
-  if (at == kMost) return;
-  count = std::min(count + 1, kMost);
+  if (at == kMax) return;
+  count = std::min(count + 1, kMax);
   std::copy_backward(best.begin() + static_cast<std::ptrdiff_t>(at),
                      best.begin() + static_cast<std::ptrdiff_t>(count - 1),
                      best.begin() + static_cast<std::ptrdiff_t>(count));

@@ -28,12 +28,12 @@ struct QuickLook {
 
 /// Orders in which little is expected, the best first.
 struct Orders {
-  static constexpr std::size_t kMost = 3;
+  static constexpr std::size_t kMax = 3;
   struct One {
     Price price;
     ByteOrder order;
   };
-  std::array<One, kMost> best;
+  std::array<One, kMax> best;
   std::size_t count = 0;
 
   void add(const One& one);

@@ -37,7 +37,7 @@ class MatchFinder {
 
  private:
   static constexpr std::uint32_t kEnd = UINT32_MAX;
-  static constexpr unsigned kMostHashBits = 17;
+  static constexpr unsigned kMaxHashBits = 17;
   [[nodiscard]] std::size_t hash(std::size_t at) const {
     return (word_at(&bytes_[at]) & 0xFFFFFF) * 0x9E3779B1U >> (32 - hash_bits_);
   }
@@ -46,7 +46,7 @@ class MatchFinder {
   std::span<const std::uint8_t> bytes_;
   Vector<std::uint32_t>&first_, &before_;
   unsigned hash_bits_ =
-      std::min(static_cast<unsigned>(std::bit_width(bytes_.size())), kMostHashBits);
+      std::min(static_cast<unsigned>(std::bit_width(bytes_.size())), kMaxHashBits);
 };
 
 /// Literals and matches of the bytes. Takes what saves most bits, and looks one byte ahead.
