@@ -217,18 +217,24 @@ void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa i
   const bool chosen = wanted.set >= 0 || wanted.lanes != 0 || wanted.observe || !wanted.others;
   if (wanted.preset == Preset::turbo || chosen || job.blocks.empty()) return;
   const auto at = [&](std::size_t i) { return out.begin() + static_cast<std::ptrdiff_t>(i); };
-  // Appends another payload and keeps the smaller.
+  // Appends another payload and keeps the smaller; the size of the other.
   const auto try_as = [&](const PayloadSettings& other) {
     const std::size_t end = out.size();
     encode(job, other, isa, memory, out);
-    const bool smaller = out.size() - end < end - begin;
+    const std::size_t size = out.size() - end;
+    const bool smaller = size < end - begin;
     out.erase(smaller ? at(begin) : at(end), smaller ? at(end) : out.end());
+    return size;
   };
   PayloadSettings other = settings;
   other.chunk.preset = Preset::fast;
   const bool strong = wanted.preset == Preset::strong;
-  if (strong) try_as(other);
-  if (!takes_matches(job.desc) || !may_match(job, out.size() - begin, strong, memory.look)) return;
+  const std::size_t of_fast = strong ? try_as(other) : out.size() - begin;
+  if (!takes_matches(job.desc)) return;
+  // Strong tries them wherever fast does, too.
+  if (!may_match(job, of_fast, false, memory.look) &&
+      (!strong || !may_match(job, out.size() - begin, true, memory.look)))
+    return;
   other.box = large_box(job.desc);
   other.chunk.matches_within = out.size() - begin;
   try_as(other);
