@@ -115,7 +115,7 @@ TEST(Isa, ThreadsDoNotChangeBytesOrTexels) {
 TEST(Isa, MachinesDoNotChangeBytes) {
   constexpr std::pair<Coding, std::uint32_t> kExpected[] = {
       {{"raw", 0, true}, 817718859},
-      {{"native", 0, true, "fast"}, 1713315296},
+      {{"native", 0, true, "fast"}, 2137044031},
       {kStrong, 3759462855},
       {{"native", 0, true, "turbo"}, 3520221391}};
   for (const auto& [coding, expected] : kExpected) {

@@ -144,8 +144,10 @@ void expect_decoder_within_bound(const TextureDesc& desc, std::span<const Packet
 }
 
 TEST(Memory, SessionsKeepToTheBound) {
+  test::Sweep sweep;
   for (const auto& desc : kShapes) {
     for (const auto& coding : kCodings) {
+      if (std::string_view(coding.backend) != "native" && !sweep.takes()) continue;
       expect_decoder_within_bound(desc, expect_encoder_within_bound(desc, coding));
     }
   }

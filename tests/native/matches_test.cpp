@@ -137,9 +137,11 @@ std::vector<TextureDesc> shapes() {
 void expect_not_larger(native::Preset preset, int level) {
   native::PayloadSettings settings;
   settings.chunk.preset = preset;
+  test::Sweep sweep;
   for (const TextureDesc& desc : shapes()) {
     for (const Poor& poor : kPoor) {
       for (const bool keyframe : {true, false}) {
+        if (!sweep.takes()) continue;
         const auto u = poor_update(desc, poor, keyframe);
         const Bytes payload = test::encode(u, settings, best_isa());
         EXPECT_LE(payload.size(), best_of_zstd(u, level) + kMayBeLarger)

@@ -263,6 +263,53 @@ TEST(NativeRasters, FormsOfChannels) {
   EXPECT_EQ(size([](unsigned, double, double) { return 0x1234U; }), 10U);
 }
 
+/// What has more than 16 bits, and few values no more, is coded in halves.
+TEST(NativeRasters, RowsOfHalves) {
+  for (const Format format : {Format::R32_SFLOAT, Format::R32G32B32A32_SFLOAT, Format::R32_UINT}) {
+    const TextureDesc desc = map_texture(format, {5, 3, 2}, {8, 8, 2});
+    for (const auto& [keyframe, intra] : {std::pair{true, false}, {true, true}, {false, false}}) {
+      auto u = update_of(desc, keyframe, intra);
+      EXPECT_TRUE(is_rows(u, test::encode(u, rows(), best_isa())));
+      check_everything(u, rows());
+    }
+  }
+}
+
+/// `count` components of that many bits, behind padding up to whole bytes.
+TextureDesc wide_texture(unsigned count, std::uint8_t bits) {
+  TextureDesc desc = map_texture(Format::R8_UNORM, {3, 3, 2}, {8, 8, 1});
+  desc.record = Record();
+  desc.record.bytes = static_cast<std::uint8_t>(count * 4);
+  for (unsigned c = 0; c < count; ++c) {
+    const auto offset = static_cast<std::uint16_t>(32 * c);
+    auto& components = desc.record.components;
+    components[desc.record.count++] =
+        Component("c" + std::to_string(c), offset, bits, ComponentType::unorm);
+    if (bits == 32) continue;
+    components[desc.record.count++] =
+        Component("p" + std::to_string(c), offset + bits, 32 - bits, ComponentType::opaque);
+  }
+  return desc;
+}
+
+TEST(NativeRasters, RowsOfHalvesOfAnyWidth) {
+  for (const unsigned bits : {17U, 24U, 31U}) {
+    const auto u = update_of(wide_texture(2, static_cast<std::uint8_t>(bits)), false, false);
+    EXPECT_TRUE(is_rows(u, test::encode(u, rows(), best_isa())));
+    check_everything(u, rows());
+  }
+}
+
+/// Eight channels in halves are as many as strips take.
+TEST(NativeRasters, RowsOfManyHalves) {
+  for (const unsigned count : {8U, 9U}) {
+    const auto u = update_of(wide_texture(count, 32), true, false);
+    ASSERT_TRUE(is_valid(u.desc.record));
+    EXPECT_EQ(is_rows(u, test::encode(u, rows(), best_isa())), count == 8);
+    check_everything(u, rows());
+  }
+}
+
 TEST(NativeRasters, UpdatesUseThePast) {
   const TextureDesc desc = map_texture(Format::B10G11R11_UFLOAT_PACK32, {8, 8, 1}, {8, 8, 1});
   const auto update = update_of(desc, false, false), key = update_of(desc, true, false);

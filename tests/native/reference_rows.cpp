@@ -2,32 +2,10 @@
 #include "native/reference_context.h"
 #include "native/reference_continuous.h"
 #include "native/reference_raster.h"
+#include "native/reference_row_tables.h"
 
 namespace gicodec::reference {
 namespace {
-
-struct RowRepeats {
-  std::array<RepeatDistribution, 16> distributions;
-  std::array<unsigned, 180> map{};
-};
-
-template <std::size_t n>
-bool read_map(Bytes& in, unsigned distributions, std::size_t entries,
-              std::array<unsigned, n>& map) {
-  const unsigned width = width_of(distributions - 1);
-  unsigned held = 0, count = 0;
-  for (std::size_t i = 0; i < entries; ++i) {
-    while (count < width) {
-      held |= in.u8() << count;
-      count += 8;
-    }
-    map[i] = held % (1U << width);
-    held >>= width;
-    count -= width;
-    if (map[i] >= distributions) return false;
-  }
-  return held == 0 && !in.failed();
-}
 
 Number without(Number a, Number b) { return std::max<Number>(0, a - b); }
 
@@ -43,10 +21,12 @@ class Rows : RasterState {
     if (!forms() || !models_.source().finished()) return false;
     for (unsigned c = 0; c < channels_.size(); ++c) {
       const bool copy = form_[c] == 3;
-      if (channels_[c].bits > 16 && !copy && (form_[c] == 0 || palette_[c].size() > 65535))
-        return false;
+      if (channels_[c].bits > 16 && !copy && palette_[c].size() > 65535) return false;
     }
+    const std::size_t whole = channels_.size();
+    if (!split()) return false;
     if (coded_.empty() ? !in.at_end() : !strips(in)) return false;
+    join(whole);
     for (const auto& block : blocks) {
       std::vector<Components> records;
       for (std::size_t r = 0; r < block.exists.size(); ++r) {
@@ -63,6 +43,38 @@ class Rows : RasterState {
   }
 
  private:
+  /// Plain channels of more than 16 bits become high halves; their low halves are further channels.
+  bool split() {
+    first_low_ = static_cast<unsigned>(channels_.size());
+    for (const unsigned c : std::vector(coded_)) {
+      if (channels_[c].bits <= 16 || form_[c] != 0) continue;
+      channels_[c].bits -= 16;
+      ChannelOf low = channels_[c];
+      low.bits = 16;
+      coded_.push_back(static_cast<unsigned>(channels_.size()));
+      channels_.push_back(low);
+      high_.push_back(c);
+      form_.push_back(0);
+      palette_.emplace_back();
+      for (auto* texels : {&now_, &past_}) {
+        for (auto& texel : *texels) {
+          texel.push_back(texel[c] & 65535);
+          texel[c] >>= 16;
+        }
+      }
+    }
+    residual_.assign(now_.size(), Texel(channels_.size(), 0));
+    return coded_.size() <= 16;
+  }
+  void join(std::size_t whole) {
+    for (std::size_t i = 0; i < high_.size(); ++i) {
+      channels_[high_[i]].bits += 16;
+      for (auto& texel : now_) texel[high_[i]] = texel[high_[i]] << 16 | texel[whole + i];
+    }
+    channels_.resize(whole);
+  }
+  bool is_low(unsigned c) const { return c >= first_low_; }
+
   bool has_exponent() const { return shared_ && coded_[0] == 0; }
   bool nearest(unsigned c) const { return channels_[c].mantissa && palette_[c].size() > 1; }
   Number largest(unsigned c) const {
@@ -74,33 +86,10 @@ class Rows : RasterState {
     return static_cast<unsigned>(channels_[c].bits);
   }
 
-  bool tables(Bytes& in) {
-    const unsigned n = in.u8();
-    if (n < 1 || n > 16) return false;
-    for (unsigned i = 0; i < n; ++i) {
-      const unsigned end0 = in.u16(), end1 = in.u16();
-      if (end0 < 1 || end0 >= end1 || end1 > 4095) return false;
-      repeats_of_.distributions[i] = {end0, end1};
-    }
-    if (!read_map(in, n, 180, repeats_of_.map)) return false;
-    const std::size_t follow = coded_.size() > lead_ ? coded_.size() - lead_ - 1 : 0;
-    const std::size_t entries[2] = {lead_ > 0 ? 128U : 64U, follow == 0   ? 0U
-                                                            : follow == 1 ? 128U
-                                                                          : 256U};
-    for (unsigned role = 0; role < 2; ++role) {
-      if (entries[role] == 0) continue;
-      const unsigned count = in.u8();
-      if (count < 1 || count > 16) return false;
-      for (unsigned i = 0; i < count; ++i) {
-        if (!read_distribution(in, roles_[role].distributions[i])) return false;
-      }
-      if (!read_map(in, count, entries[role], roles_[role].map)) return false;
-    }
-    return true;
-  }
-
   bool strips(Bytes& in) {
-    if (!tables(in)) return false;
+    const std::size_t no_lows = coded_.size() - high_.size();
+    const std::size_t follow = no_lows > lead_ ? no_lows - lead_ - 1 : 0;
+    if (!tables_.read(in, lead_ > 0, follow, high_.size())) return false;
     errors_.assign(now_.size(), std::vector<std::array<Number, 9>>(channels_.size()));
     Lanes coder(in, static_cast<unsigned>(std::min<std::size_t>(32, size_[1])));
     const std::size_t nx = size_[0];
@@ -165,7 +154,7 @@ class Rows : RasterState {
     for (std::size_t l = 0; l < lanes_.size(); ++l) {
       if (lanes_[l] != kNone) context[l] = repeat_context(lanes_[l]);
     }
-    const auto symbols = coder.repeats(repeats_of_, context);
+    const auto symbols = coder.repeats(tables_.repeats, context);
     for (std::size_t l = 0; l < lanes_.size(); ++l) {
       if (lanes_[l] == kNone) continue;
       const std::size_t t = lanes_[l];
@@ -192,7 +181,8 @@ class Rows : RasterState {
         coding[l] = predict(lanes_[l], k, first[l], second[l]);
         context[l] = static_cast<int>(coding[l].context);
       }
-      const auto values = coder.tokens(roles_[k <= lead_ ? 0 : 1], context);
+      const unsigned role = k <= lead_ ? 0 : is_low(coded_[k]) ? 2 : 1;
+      const auto values = coder.tokens(tables_.roles[role], context);
       for (std::size_t l = 0; l < lanes_.size(); ++l) {
         if (context[l] == Lanes::kInactive) continue;
         enter(lanes_[l]);
@@ -252,14 +242,23 @@ class Rows : RasterState {
       g = {p, changed(p, without(w, pw) / 2 + without(n, pn) / 2,
                       without(pw, w) / 2 + without(pn, n) / 2)};
     }
-    g.push_back(nw >= std::max(w, n)   ? std::min(w, n)
-                : nw <= std::min(w, n) ? std::max(w, n)
-                                       : w + n - nw);
-    g.push_back(changed(w, without(ne / 2, nw / 2), without(nw / 2, ne / 2)));
+    if (is_low(c)) {
+      if (update_) g[1] = (g[0] + w - past(of_past(t, W))) & 65535;
+      g.push_back((w + n - nw) & 65535);
+      g.push_back(w);
+    } else {
+      g.push_back(nw >= std::max(w, n)   ? std::min(w, n)
+                  : nw <= std::min(w, n) ? std::max(w, n)
+                                         : w + n - nw);
+      g.push_back(changed(w, without(ne / 2, nw / 2), without(nw / 2, ne / 2)));
+    }
     if (deep) {
       const auto z = [&](Around a) { return in_units(now_[of_slice(t, a)], c, exponent); };
       g.push_back(z(Z));
-      if (!update_) {
+      if (!update_ && is_low(c)) {
+        g.push_back((z(Z) + w - z(W)) & 65535);
+        g.push_back((z(Z) + n - z(N)) & 65535);
+      } else if (!update_) {
         g.push_back(changed(z(Z), without(w, z(W)), without(z(W), w)));
         g.push_back(changed(z(Z), without(n, z(N)), without(z(N), n)));
       }
@@ -278,7 +277,7 @@ class Rows : RasterState {
     }
     base = std::min(base, most);
     coding.prediction = base;
-    if (k > lead_) {
+    if (k > lead_ && !is_low(c)) {
       const Number e = std::max<Number>(e0, -32767), u = std::max<Number>(e, 0),
                    d = std::max<Number>(-e, 0);
       coding.parts = {base, changed(base, u / 2, d / 2), changed(base, u, d),
@@ -304,6 +303,11 @@ class Rows : RasterState {
     const Local local = local_context(four, reference::Around{0, 1, 2, 3});
     const bool deep = bits(c) > 11;
     coding.flip = local.flip;
+    if (is_low(c)) {
+      const bool missed = residual_[t][high_[c - first_low_]] != 0;
+      coding.context = 16 * local.sign + magnitude(local.energy, true) + (missed ? 64 : 0);
+      return;
+    }
     if (k <= lead_) {
       coding.context = 16 * local.sign + magnitude(local.energy, deep) + (k > 0 ? 64 : 0);
       return;
@@ -341,40 +345,23 @@ class Rows : RasterState {
     } else {
       now_[t][c] = std::min((coding.prediction + e) & mask_of(bits(c)), largest(c));
     }
-    for (unsigned i = 0; i < coding.guesses.size(); ++i)
-      errors_[t][c][i] = std::min<Number>(5461, std::abs(coding.guesses[i] - now_[t][c]));
+    for (unsigned i = 0; i < coding.guesses.size(); ++i) {
+      const Number d = coding.guesses[i] - now_[t][c];
+      errors_[t][c][i] = std::min<Number>(5461, std::abs(is_low(c) ? with_sign(d & 65535, 16) : d));
+    }
     for (unsigned i = 0; i < coding.parts.size(); ++i)
       errors_[t][c][5 + i] = std::min<Number>(5461, std::abs(coding.parts[i] - now_[t][c]));
   }
 
-  RowRepeats repeats_of_;
-  std::array<DistributionTables, 2> roles_;
+  RowTables tables_;
+  std::vector<unsigned> high_;  ///< by low half: the channel of its high half
+  unsigned first_low_ = 0;
   std::vector<std::size_t> lanes_;
   std::size_t x_ = 0, y_ = 0, z_ = 0;
   std::vector<std::vector<std::array<Number, 9>>> errors_;  ///< of guesses, then of parts
 };
 
 }  // namespace
-
-bool is_raster(const TextureDesc& desc) {
-  return desc.model == Model::continuous &&
-         std::ranges::any_of(desc.record.used(), [](const Component& component) {
-           return component.type != ComponentType::opaque;
-         });
-}
-
-bool may_be_raster(const TextureDesc& desc, const std::array<std::uint32_t, 3>& box) {
-  const std::uint64_t volume = std::uint64_t{box[0]} * box[1] * box[2];
-  return volume == 1 || volume * record_count(desc.block) * desc.record.count <= 1 << 20;
-}
-
-bool may_be_rows(const TextureDesc& desc, const std::array<std::uint32_t, 3>& box) {
-  const std::uint64_t nx = std::uint64_t{box[0]} * desc.block.x,
-                      ny = std::uint64_t{box[1]} * desc.block.y,
-                      nz = std::uint64_t{box[2]} * desc.block.z;
-  return may_be_raster(desc, box) &&
-         (nx + 72) * 32 * ((ny + 31) / 32) * nz * desc.record.count <= 1 << 20;
-}
 
 std::optional<std::vector<std::vector<std::byte>>> decode_rows(
     const TextureDesc& desc, const std::array<std::uint32_t, 3>& box,

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <iterator>
 #include <random>
+#include <sstream>
 
 namespace gicodec::tools {
 
@@ -81,9 +82,9 @@ Dump without_alpha(Dump dump) {
 }
 
 std::vector<std::byte> file_bytes(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
-  const auto bytes = std::as_bytes(std::span(text));
+  std::ostringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  const auto bytes = std::as_bytes(std::span(text.view()));
   return {bytes.begin(), bytes.end()};
 }
 

@@ -365,7 +365,8 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
     done = true;
   };
   const auto rows = [&](std::size_t most) {
-    return encode_rows(u, positions, texels, most, w.rows, w.models.values, out);
+    return encode_rows(u, positions, texels, settings.preset != Preset::turbo, most, w.rows,
+                       w.models.values, out);
   };
   const bool by_rows = rows_pay(u, settings, positions);
   if (settings.matches_within != 0) {

@@ -41,9 +41,13 @@ std::uint64_t raster_memory(const TextureDesc& desc) noexcept {
   // values now and before, a strip's five times, and steps.
   constexpr std::uint64_t kValue = 40, kRowValue = 32, kFixed = 1 << 20;
   const std::uint64_t block = std::uint64_t{record_count(desc.block)} * desc.record.count;
+  const auto used = desc.record.used();
+  const bool halves = std::any_of(used.begin(), used.end(), [](auto& c) { return c.bits > 16; });
   const std::uint64_t most = std::max<std::uint64_t>(kMaxRasterValues, block);
   return kValue * std::min(most, block * block_count(desc)) +
-         kRowValue * std::min<std::uint64_t>(kMaxRowValues, row_values(desc, desc.grid)) + kFixed;
+         kRowValue * (halves ? 2 : 1) *
+             std::min<std::uint64_t>(kMaxRowValues, row_values(desc, desc.grid)) +
+         kFixed;
 }
 
 template <typename Body>

@@ -32,11 +32,11 @@ struct RowMemory {
   std::vector<std::byte> forms_bytes;
 };
 
-/// Appends the chunk unless it would have more than `most` bytes; false then, and `out` is as it
-/// was.
+/// Appends the chunk unless it would have more than `most` bytes, or halves and no `halves` are
+/// wanted; false then, and `out` is as it was.
 bool encode_rows(const Update& u, std::span<const std::uint32_t> positions,
-                 const BlockTable& records, std::size_t most, RowMemory& memory, ValueModel& values,
-                 std::vector<std::byte>& out);
+                 const BlockTable& records, bool halves, std::size_t most, RowMemory& memory,
+                 ValueModel& values, std::vector<std::byte>& out);
 /// Checks what a chunk holds as far as that needs no blocks.
 Status check_rows(const TextureDesc& desc, std::span<const std::byte> bytes);
 /// `bytes`: what follows the first. Safe on any bytes.
@@ -45,7 +45,7 @@ Status decode_rows(const Update& u, std::span<const std::uint32_t> positions,
                    RowMemory& memory, ValueModel& values);
 
 // Shared by both directions.
-/// What the mirror has, in places, after forms are known.
+/// What the mirror has, as it is coded, after forms are known.
 void load_past(const Update& u, std::span<const std::uint32_t> positions, RowMemory& memory);
 /// The strips' channels, after forms are known.
 [[nodiscard]] RowStrip prepare_strips(bool update, RowMemory& memory);

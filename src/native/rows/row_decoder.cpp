@@ -76,18 +76,17 @@ Status decode_rows(const Update& u, std::span<const std::uint32_t> positions,
   for (unsigned c = 0; c < planes.channels().count; ++c) {
     const auto& form = memory.forms[c];
     const bool wide = planes.channels().channel[c].bits() > 16;
-    if (wide && (form.form == Form::plain || form.palette.size() > UINT16_MAX)) {
-      return Status::corrupt;
-    }
+    if (wide && form.palette.size() > UINT16_MAX) return Status::corrupt;
   }
+  if (!planes.list_coded(memory.forms)) return Status::corrupt;
   ByteReader rest(reader.rest().subspan(static_cast<std::size_t>(size)));
-  if (!memory.forms.coded().empty()) {
+  if (!planes.coded().empty()) {
     if (u.update) load_past(u, positions, memory);
     if (const Status status = decode_strips(u, rest, memory); status != Status::ok) return status;
   } else if (!rest.rest().empty()) {
     return Status::corrupt;
   }
-  planes.from_places(memory.forms);
+  planes.from_planes(memory.forms);
   planes.to_bits();
   const std::size_t block = u.block_bytes();
   for (const auto position : positions) {

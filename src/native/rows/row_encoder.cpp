@@ -31,27 +31,28 @@ std::span<const Step> model(const Update& u, RowStrip& strip, RowMemory& memory)
 }  // namespace
 
 bool encode_rows(const Update& u, std::span<const std::uint32_t> positions,
-                 const BlockTable& records, std::size_t most, RowMemory& memory, ValueModel& values,
-                 std::vector<std::byte>& out) {
+                 const BlockTable& records, bool halves, std::size_t most, RowMemory& memory,
+                 ValueModel& values, std::vector<std::byte>& out) {
   RowPlanes& planes = memory.planes;
   planes.lay_out(u, positions, true);
   if (u.mirrored) planes.load_mirror(u);
   for (const auto position : positions) planes.load(u, u.probes[position], records[position]);
   planes.to_ordinals();
-  if (!planes.choose_forms(memory.forms)) return false;
+  if (!planes.choose_forms(halves, memory.forms)) return false;
   memory.forms_bytes.clear();
   values.reset();
   BinaryEncoder coder(memory.forms_bytes);
   if (!memory.forms.code(coder, planes.channels(), planes.texels(), values)) return false;
   coder.finish();
+  if (!planes.list_coded(memory.forms)) return false;
 
   const std::size_t begin = out.size();
   ByteWriter writer(out);
   writer.fixed(kRowChunk);
   writer.varint(memory.forms_bytes.size());
   writer.bytes(memory.forms_bytes);
-  if (!memory.forms.coded().empty()) {
-    planes.to_places(memory.forms);
+  if (!planes.coded().empty()) {
+    planes.to_planes(memory.forms);
     if (u.update) load_past(u, positions, memory);
     RowStrip strip = prepare_strips(u.update, memory);
     const RowClasses classes = classes_of(strip);

@@ -42,7 +42,13 @@ void RowPlanes::lay_out(const Update& u, std::span<const std::uint32_t> position
   rows_ = rows_of_slice_ * box_.blocks.z * u.desc.block.z;
   stride_ = round_up(columns_, 8) + kMargin;
   plane_ = (1 + rows_ + kLanes) * stride_ + 2 * kMargin;
-  const std::size_t size = channels_.count * plane_;
+  wide_count_ = 0;
+  for (unsigned c = 0; c < channels_.count; ++c) {
+    if (!is_wide(c)) continue;
+    low_plane_[c] = static_cast<std::uint8_t>(channels_.count + wide_count_);
+    wide_channel_[wide_count_++] = static_cast<std::uint8_t>(c);
+  }
+  const std::size_t size = (channels_.count + wide_count_) * plane_;
   if (values_.size() < size) values_.resize(size);
   if (zero) std::fill_n(values_.begin(), size, std::uint16_t{0});
   for (unsigned c = 0; c < channels_.count; ++c) {
@@ -208,7 +214,7 @@ bool RowPlanes::is_copy(unsigned c, unsigned of) {
   return true;
 }
 
-bool RowPlanes::choose_forms(ChannelForms& forms) {
+bool RowPlanes::choose_forms(bool halves, ChannelForms& forms) {
   forms.begin(channels_);
   for (unsigned c = 0; c < channels_.count; ++c) {
     const bool found = find_ordinals(c);
@@ -218,28 +224,73 @@ bool RowPlanes::choose_forms(ChannelForms& forms) {
       if (copied) forms.choose_copy(c, a);
     }
     if (copied) continue;
-    if (!found) return false;
-    forms.choose(c, ordinals_, texels(), true);
-    if (is_wide(c) && forms[c].form == Form::plain) return false;
+    forms.choose(c, ordinals_, texels(), found);
+    if (has_halves(forms, c) && !halves) return false;
   }
   return true;
 }
 
-void RowPlanes::to_places(const ChannelForms& forms) {
-  for (unsigned c = 0; c < channels_.count; ++c) {
-    if (!forms.has_places(c)) continue;
-    if (is_wide(c)) {
-      for (std::size_t y = 0; y < rows_; ++y) {
-        const std::uint32_t* const from = wide(c, y);
-        std::uint16_t* const to = row(c, y);
-        for (std::size_t x = 0; x < columns_; ++x) {
-          to[x] = x > 0 && from[x] == from[x - 1]
-                      ? to[x - 1]
-                      : static_cast<std::uint16_t>(forms.place_of(c, from[x]));
-        }
+bool RowPlanes::list_coded(const ChannelForms& forms) {
+  const auto channels = forms.coded();
+  coded_count_ = static_cast<unsigned>(channels.size());
+  std::copy(channels.begin(), channels.end(), coded_.begin());
+  for (const unsigned c : channels) {
+    if (!has_halves(forms, c)) continue;
+    if (coded_count_ == coded_.size()) return false;
+    coded_[coded_count_++] = low_plane_[c];
+  }
+  return true;
+}
+
+/// Places, or halves.
+void RowPlanes::wide_to_planes(const ChannelForms& forms, unsigned c) {
+  const bool halves = has_halves(forms, c);
+  for (std::size_t y = 0; y < rows_; ++y) {
+    const std::uint32_t* const from = wide(c, y);
+    std::uint16_t* const to = row(c, y);
+    if (!halves) {
+      for (std::size_t x = 0; x < columns_; ++x) {
+        to[x] = x > 0 && from[x] == from[x - 1]
+                    ? to[x - 1]
+                    : static_cast<std::uint16_t>(forms.place_of(c, from[x]));
       }
       continue;
     }
+    std::uint16_t* const low = row(low_plane_[c], y);
+    for (std::size_t x = 0; x < columns_; ++x) {
+      to[x] = static_cast<std::uint16_t>(from[x] >> 16);
+      low[x] = static_cast<std::uint16_t>(from[x]);
+    }
+  }
+}
+void RowPlanes::wide_from_planes(const ChannelForms& forms, unsigned c) {
+  const ChannelForm& form = forms[c];
+  if (form.form == Form::copy) {
+    std::copy(wide_[form.of].begin(), wide_[form.of].end(), wide_[c].begin());
+    return;
+  }
+  if (forms.is_constant(c)) {
+    std::fill(wide_[c].begin(), wide_[c].end(), form.palette[0]);
+    return;
+  }
+  const bool halves = has_halves(forms, c);
+  for (std::size_t y = 0; y < rows_; ++y) {
+    const std::uint16_t* const from = row(c, y);
+    const std::uint16_t* const low = row(halves ? low_plane_[c] : c, y);
+    std::uint32_t* const to = wide(c, y);
+    for (std::size_t x = 0; x < columns_; ++x) {
+      to[x] = halves ? static_cast<std::uint32_t>(from[x]) << 16 | low[x] : form.palette[from[x]];
+    }
+  }
+}
+
+void RowPlanes::to_planes(const ChannelForms& forms) {
+  for (unsigned c = 0; c < channels_.count; ++c) {
+    if (is_wide(c)) {
+      if (has_halves(forms, c) || forms.has_places(c)) wide_to_planes(forms, c);
+      continue;
+    }
+    if (!forms.has_places(c)) continue;
     const auto& palette = forms[c].palette;
     table_.resize(std::size_t{1} << channels_.channel[c].bits());
     std::uint16_t place = 0;
@@ -251,25 +302,17 @@ void RowPlanes::to_places(const ChannelForms& forms) {
   }
 }
 
-void RowPlanes::from_places(const ChannelForms& forms) {
+void RowPlanes::from_planes(const ChannelForms& forms) {
   for (unsigned c = 0; c < channels_.count; ++c) {
     const ChannelForm& form = forms[c];
-    if (form.form == Form::copy && is_wide(c)) {
-      std::copy(wide_[form.of].begin(), wide_[form.of].end(), wide_[c].begin());
+    if (is_wide(c)) {
+      wide_from_planes(forms, c);
     } else if (form.form == Form::copy) {
       for (std::size_t y = 0; y < rows_; ++y) {
         std::memcpy(row(c, y), row(form.of, y), columns_ * 2);
       }
-    } else if (forms.is_constant(c) && is_wide(c)) {
-      std::fill(wide_[c].begin(), wide_[c].end(), form.palette[0]);
     } else if (forms.is_constant(c)) {
       for_each_value(c, [&](std::uint16_t& v) { v = static_cast<std::uint16_t>(form.palette[0]); });
-    } else if (forms.has_places(c) && is_wide(c)) {
-      for (std::size_t y = 0; y < rows_; ++y) {
-        const std::uint16_t* const from = row(c, y);
-        std::uint32_t* const to = wide(c, y);
-        for (std::size_t x = 0; x < columns_; ++x) to[x] = form.palette[from[x]];
-      }
     } else if (forms.has_places(c)) {
       table_.assign(form.palette.begin(), form.palette.end());
       for_each_value(c, [table = table_.data()](std::uint16_t& value) { value = table[value]; });

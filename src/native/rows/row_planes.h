@@ -17,8 +17,9 @@ namespace gicodec::native {
 struct Update;
 
 /// The least box of blocks around those listed, all texels of which are coded; the rows of its
-/// slices stand below one another. Channels of more than 16 bits have words of places alone. Memory
-/// of one thread, kept for its capacity.
+/// slices stand below one another. Planes are channels in places, or in 16-bit words; those of wide
+/// channels, of more than 16 bits, are places or high halves, and behind all channels follow their
+/// low halves. Memory of one thread, kept for its capacity.
 class RowPlanes {
  public:
   /// Makes room; all texels are zero, or anything.
@@ -31,11 +32,20 @@ class RowPlanes {
   void to_ordinals();
   void to_bits();
 
-  /// False if a channel of more than 16 bits has too many ordinals for places.
-  [[nodiscard]] bool choose_forms(ChannelForms& forms);
+  /// False if that would need more planes than there may be, or low halves and none are wanted.
+  [[nodiscard]] bool choose_forms(bool halves, ChannelForms& forms);
+  /// Lists the planes that are coded by those forms; false if there are too many.
+  [[nodiscard]] bool list_coded(const ChannelForms& forms);
+  [[nodiscard]] std::span<const std::uint8_t> coded() const {
+    return std::span(coded_).first(coded_count_);
+  }
+  [[nodiscard]] bool is_low(unsigned plane) const { return plane >= channels_.count; }
+  [[nodiscard]] unsigned channel_of(unsigned plane) const {
+    return is_low(plane) ? wide_channel_[plane - channels_.count] : plane;
+  }
   /// Ordinals ↔ what is coded. An ordinal that is not in a palette has the place of the next one.
-  void to_places(const ChannelForms& forms);
-  void from_places(const ChannelForms& forms);
+  void to_planes(const ChannelForms& forms);
+  void from_planes(const ChannelForms& forms);
 
   [[nodiscard]] const Channels& channels() const { return channels_; }
   [[nodiscard]] std::size_t columns() const { return columns_; }
@@ -43,12 +53,12 @@ class RowPlanes {
   [[nodiscard]] std::size_t rows_of_slice() const { return rows_of_slice_; }
   [[nodiscard]] std::size_t texels() const { return columns_ * rows_; }
   /// With kMargin words on either side. There are rows beyond the last, as many as lanes.
-  [[nodiscard]] std::uint16_t* row(unsigned channel, std::size_t y) {
-    return row_above(channel, y) + stride_;
+  [[nodiscard]] std::uint16_t* row(unsigned plane, std::size_t y) {
+    return row_above(plane, y) + stride_;
   }
   /// That before row `y`; there is one before the first.
-  [[nodiscard]] std::uint16_t* row_above(unsigned channel, std::size_t y) {
-    return values_.data() + channel * plane_ + y * stride_ + kMargin;
+  [[nodiscard]] std::uint16_t* row_above(unsigned plane, std::size_t y) {
+    return values_.data() + plane * plane_ + y * stride_ + kMargin;
   }
   static constexpr std::size_t kMargin = kRowMargin;
 
@@ -68,12 +78,19 @@ class RowPlanes {
   void flip(unsigned channel);
   [[nodiscard]] bool find_ordinals(unsigned channel);
   [[nodiscard]] bool is_copy(unsigned channel, unsigned of);
+  [[nodiscard]] bool has_halves(const ChannelForms& forms, unsigned channel) const {
+    return is_wide(channel) && forms[channel].form == Form::plain;
+  }
+  void wide_to_planes(const ChannelForms& forms, unsigned channel);
+  void wide_from_planes(const ChannelForms& forms, unsigned channel);
 
   Channels channels_;
   std::array<std::uint8_t, kMaxComponents> plane_of_{};  ///< of kernels, the first, by channel
   BlockBox box_;
   std::size_t columns_ = 0, rows_ = 0, stride_ = 0, plane_ = 0;
   std::size_t rows_of_slice_ = 0;
+  std::array<std::uint8_t, kMaxComponents> wide_channel_{}, low_plane_{}, coded_{};
+  unsigned wide_count_ = 0, coded_count_ = 0;
   Vector<std::uint16_t> values_, block_;
   std::array<Vector<std::uint32_t>, kMaxComponents> wide_;  ///< [y][x] of channels above 16 bits
   Vector<std::uint32_t> ordinals_;

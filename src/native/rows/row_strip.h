@@ -35,6 +35,8 @@ struct RowChannel {
   unsigned bits;          ///< of residuals
   std::uint16_t largest;  ///< value
   bool in_units;          ///< a mantissa, in units of the texel's exponent
+  bool low;               ///< low half of a channel, the high half of which is channel `high`
+  std::uint8_t high;
   /// Of mantissas with a palette: places by value, and values by place; else null.
   const std::uint16_t *nearest, *palette;
   std::uint16_t last_place;

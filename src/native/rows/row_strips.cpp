@@ -16,22 +16,22 @@ std::size_t tiled_steps(const RowPlanes& planes) {
 }
 
 /// Rows from `y` on, each as far before its begin as its lane is behind.
-std::array<std::uint16_t*, kLanes> skewed_rows(RowPlanes& planes, unsigned channel, std::size_t y) {
+std::array<std::uint16_t*, kLanes> skewed_rows(RowPlanes& planes, unsigned plane, std::size_t y) {
   std::array<std::uint16_t*, kLanes> rows;
   for (std::size_t l = 0; l < kLanes; ++l) {
-    rows[l] = planes.row(channel, y + l) - kRowDelay * l;
+    rows[l] = planes.row(plane, y + l) - kRowDelay * l;
   }
   return rows;
 }
 
 enum class From { here, above };
 /// Rows from `y` on, or those above them.
-void skew(const Kernels& kernels, RowPlanes& planes, unsigned channel, std::size_t y, From from,
+void skew(const Kernels& kernels, RowPlanes& planes, unsigned plane, std::size_t y, From from,
           std::uint16_t* lanes) {
   const std::uint16_t* rows[kLanes];
   for (std::size_t l = 0; l < kLanes; ++l) {
     const std::uint16_t* const row =
-        from == From::here ? planes.row(channel, y + l) : planes.row_above(channel, y + l);
+        from == From::here ? planes.row(plane, y + l) : planes.row_above(plane, y + l);
     rows[l] = row - kRowDelay * l;
   }
   kernels.to_lanes(rows, tiled_steps(planes), lanes);
@@ -48,14 +48,14 @@ void load_past(const Update& u, std::span<const std::uint32_t> positions, RowMem
   memory.past.lay_out(u, positions, true);
   memory.past.load_mirror(u);
   memory.past.to_ordinals();
-  memory.past.to_places(memory.forms);
+  memory.past.to_planes(memory.forms);
 }
 
 RowStrip prepare_strips(bool update, RowMemory& memory) {
   RowPlanes& planes = memory.planes;
   const ChannelForms& forms = memory.forms;
   const Channels& channels = planes.channels();
-  const auto coded = forms.coded();
+  const auto coded = planes.coded();
   const std::size_t columns = planes.columns(), above = above_stride(columns);
   RowStrip strip{};
   strip.columns = static_cast<unsigned>(columns);
@@ -64,8 +64,9 @@ RowStrip prepare_strips(bool update, RowMemory& memory) {
   const bool exponents = channels.shared && !coded.empty() && coded[0] == 0;
   strip.lead = exponents ? 1 : 0;
   for (unsigned k = 0; k < strip.channels; ++k) {
-    const Channel& channel = channels.channel[coded[k]];
-    const auto& palette = forms[coded[k]].palette;
+    const unsigned c = planes.channel_of(coded[k]);
+    const Channel& channel = channels.channel[c];
+    const auto& palette = forms[c].palette;
     RowChannel& to = strip.channel[k];
     memory.lanes[k].resize(tiled_steps(planes) * kLanes);
     const bool slices = planes.rows() > planes.rows_of_slice();
@@ -85,15 +86,17 @@ RowStrip prepare_strips(bool update, RowMemory& memory) {
     memory.above[k].assign(kRowTrail * above, 0);
     to.values = memory.lanes[k].data();
     to.above = memory.above[k].data();
-    to.largest = static_cast<std::uint16_t>(channel.largest());
-    to.bits = channel.bits();
+    to.low = planes.is_low(coded[k]);
+    to.high = static_cast<std::uint8_t>(std::find(coded.begin(), coded.end(), c) - coded.begin());
+    to.bits = to.low ? 16 : channel.bits() > 16 ? channel.bits() - 16 : channel.bits();
+    to.largest = static_cast<std::uint16_t>((1U << to.bits) - 1);
     to.in_units = channel.in_units && exponents;
     to.last_place = to.largest;
-    if (forms.has_places(coded[k])) {
+    if (forms.has_places(c)) {
       to.largest = static_cast<std::uint16_t>(palette.size() - 1);
       to.bits = static_cast<unsigned>(std::bit_width(palette.size() - 1));
     }
-    if (forms.has_palette_of_mantissas(coded[k])) {
+    if (forms.has_palette_of_mantissas(c)) {
       find_nearest(channel, palette, memory.nearest[k]);
       memory.palette[k].assign(palette.begin(), palette.end());
       to.nearest = memory.nearest[k].data();
@@ -110,8 +113,11 @@ RowStrip prepare_strips(bool update, RowMemory& memory) {
 }
 
 RowClasses classes_of(const RowStrip& strip) {
-  const unsigned followers = strip.channels > strip.lead ? strip.channels - strip.lead - 1 : 0;
-  return {strip.lead + 1, followers == 0 ? 0 : followers == 1 ? 2U : 4U};
+  const auto lows = static_cast<unsigned>(
+      std::count_if(strip.channel, strip.channel + strip.channels, [](auto& c) { return c.low; }));
+  const unsigned whole = strip.channels - lows;
+  const unsigned followers = whole > strip.lead ? whole - strip.lead - 1 : 0;
+  return {strip.lead + 1, followers == 0 ? 0 : followers == 1 ? 2U : 4U, lows == 0 ? 0U : 2U};
 }
 
 void move_to(const Kernels& kernels, RowStrip& strip, RowMemory& memory, std::size_t y) {
@@ -127,11 +133,11 @@ void move_to(const Kernels& kernels, RowStrip& strip, RowMemory& memory, std::si
     std::fill(memory.above_repeats.begin(), memory.above_repeats.end(), std::uint16_t{0});
   }
   for (unsigned k = 0; k < strip.channels; ++k) {
-    const unsigned channel = memory.forms.coded()[k];
+    const unsigned plane = planes.coded()[k];
     const auto load = [&](RowPlanes& from, std::size_t row, Vector<std::uint16_t>& there,
                           Vector<std::uint16_t>& above) {
-      skew(kernels, from, channel, row, From::here, there.data() + kLanes);
-      skew(kernels, from, channel, row, From::above, above.data() + kLanes);
+      skew(kernels, from, plane, row, From::here, there.data() + kLanes);
+      skew(kernels, from, plane, row, From::above, above.data() + kLanes);
     };
     if (strip.deep) load(planes, y - slice, memory.slice[k], memory.slice_above[k]);
     if (strip.update) load(memory.past, y, memory.past_lanes[k], memory.past_above[k]);
@@ -139,20 +145,22 @@ void move_to(const Kernels& kernels, RowStrip& strip, RowMemory& memory, std::si
 }
 
 void load_lanes(const Kernels& kernels, RowMemory& memory, std::size_t y) {
-  for (unsigned k = 0; k < memory.forms.coded().size(); ++k) {
-    skew(kernels, memory.planes, memory.forms.coded()[k], y, From::here, memory.lanes[k].data());
+  RowPlanes& planes = memory.planes;
+  for (unsigned k = 0; k < planes.coded().size(); ++k) {
+    skew(kernels, planes, planes.coded()[k], y, From::here, memory.lanes[k].data());
   }
 }
 
 void store_lanes(const Kernels& kernels, RowMemory& memory, const RowStrip& strip, std::size_t y) {
+  RowPlanes& planes = memory.planes;
   for (unsigned k = 0; k < strip.channels; ++k) {
-    auto rows = skewed_rows(memory.planes, memory.forms.coded()[k], y);
+    const unsigned plane = planes.coded()[k];
+    auto rows = skewed_rows(planes, plane, y);
     // Lanes without a row go behind the last one.
     for (unsigned l = strip.rows; l < kLanes; ++l) {
-      rows[l] =
-          memory.planes.row(memory.forms.coded()[k], memory.planes.rows() + l) - kRowDelay * l;
+      rows[l] = planes.row(plane, planes.rows() + l) - kRowDelay * l;
     }
-    kernels.from_lanes(memory.lanes[k].data(), tiled_steps(memory.planes), rows.data());
+    kernels.from_lanes(memory.lanes[k].data(), tiled_steps(planes), rows.data());
   }
 }
 

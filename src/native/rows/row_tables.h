@@ -16,8 +16,8 @@ namespace gicodec::native {
 
 struct Step;
 
-/// Roles of residuals: those of exponent and lead, those of others.
-inline constexpr unsigned kRowRoles = 2;
+/// Roles of residuals: those of exponent and lead, those of others, those of low halves.
+inline constexpr unsigned kRowRoles = 3;
 
 /// Classes of the contexts of each role that a chunk has.
 using RowClasses = std::array<unsigned, kRowRoles>;

@@ -41,7 +41,7 @@ GICODEC_INLINE Trail trail_of_repeats(const RowStrip& s) { return trail_of(s, s.
 constexpr unsigned kValueTrail = 0, kResidualTrail = 1, kGuessTrail = 2,
                    kPartTrail = kGuessTrail + kRowGuesses;
 GICODEC_INLINE unsigned parts_of(const RowStrip& s, unsigned k) {
-  return k > s.lead ? kRowParts : 0;
+  return k > s.lead && !s.channel[k].low ? kRowParts : 0;
 }
 
 /// Calls body(trail, its row of the strip above).
@@ -196,4 +196,21 @@ GICODEC_INLINE void make_guesses(const RowStrip& s, const RowValues& a, I16 larg
   if (Beside<kFlat>::update(s)) return;
   *next++ = changed_by(a.z, a.now.w, a.zw, largest);
   *next++ = changed_by(a.z, a.now.n, a.zn, largest);
+}
+/// The same of low halves. All is modulo 2^16: what the high halves carry does not matter.
+template <bool kFlat>
+GICODEC_INLINE void make_low_guesses(const RowStrip& s, const RowValues& a,
+                                     I16 (&guess)[kRowGuesses]) {
+  I16* next = guess;
+  if (Beside<kFlat>::update(s)) {
+    *next++ = a.past;
+    *next++ = sub(add(a.past, a.now.w), a.past_w);
+  }
+  *next++ = sub(add(a.now.w, a.now.n), a.now.nw);
+  *next++ = a.now.w;
+  if (!Beside<kFlat>::deep(s)) return;
+  *next++ = a.z;
+  if (Beside<kFlat>::update(s)) return;
+  *next++ = sub(add(a.z, a.now.w), a.zw);
+  *next++ = sub(add(a.z, a.now.n), a.zn);
 }

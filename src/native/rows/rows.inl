@@ -45,6 +45,14 @@ GICODEC_INLINE RowContext row_context(const RowStrip& s, unsigned k, const Four&
   return {add(add(sign, size), set(kind)), select(none, local.flip, votes)};
 }
 
+/// Of low halves, which are little but noise: how much, and whether the high half was as predicted.
+GICODEC_INLINE RowContext low_context(const Four& residuals, I16 high) {
+  const LocalContext local = local_context(residuals);
+  const I16 size = magnitude_class(local.energy, kWideMagnitudes);
+  const I16 other = select(equal(high, set(0)), set(0), set(kRowClass));
+  return {add(add(local.sign, size), other), local.flip};
+}
+
 /// What a texel may repeat: W or N; in updates its past or W.
 template <bool kFlat>
 GICODEC_INLINE I16 first_candidate(const RowStrip& s, const RowValues& a) {
@@ -118,7 +126,11 @@ GICODEC_INLINE void code_row_channel(const RowStrip& s, const RowPlace& p, unsig
     return sum_around(errors);
   };
   I16 guess[kRowGuesses];
-  make_guesses<kFlat>(s, a, largest, guess);
+  if (channel.low) {
+    make_low_guesses<kFlat>(s, a, guess);
+  } else {
+    make_guesses<kFlat>(s, a, largest, guess);
+  }
   I16 base = guess[0], least = errors_around(kGuessTrail);
   least = sub(least, shift_right<2>(least));
   for (unsigned i = 1; i < guesses; ++i) {
@@ -146,7 +158,10 @@ GICODEC_INLINE void code_row_channel(const RowStrip& s, const RowPlace& p, unsig
     }
   }
   const Four residuals = trail_around(trail_of(s, k, kResidualTrail), p);
-  const RowContext context = row_context(s, k, residuals, leads);
+  const RowContext context =
+      channel.low
+          ? low_context(residuals, load(trail_of(s, channel.high, kResidualTrail).step(p.step) + 1))
+          : row_context(s, k, residuals, leads);
 
   const I16 place = channel.nearest == nullptr ? prediction : entries(channel.nearest, prediction);
   std::uint16_t* const current = channel.values + p.values;
@@ -156,7 +171,8 @@ GICODEC_INLINE void code_row_channel(const RowStrip& s, const RowPlace& p, unsig
     const I16 at = channel.nearest == nullptr ? value : entries(channel.nearest, value);
     residual = wrap(sub(at, place), channel.bits);
   }
-  residual = coder.token(k <= s.lead ? 0 : 1, k, context.context, open, context.flip, residual);
+  const unsigned role = k <= s.lead ? 0 : channel.low ? 2 : 1;
+  residual = coder.token(role, k, context.context, open, context.flip, residual);
   if constexpr (kDecode) {
     residual = wrap(residual, channel.bits);
     value = bit_and(add(place, residual), set((1 << channel.bits) - 1));
@@ -177,7 +193,8 @@ GICODEC_INLINE void code_row_channel(const RowStrip& s, const RowPlace& p, unsig
   if (k == s.lead + 1) leads.second = residual;
   const auto keep_error = [&](unsigned kind, I16 by) GICODEC_INLINE_LAMBDA {
     const Trail trail = trail_of(s, k, kind);
-    const I16 error = min_u(distance(value, by), set(kMostError));
+    const I16 off = channel.low ? magnitude(sub(value, by)) : distance(value, by);
+    const I16 error = min_u(off, set(kMostError));
     const I16 kept = shift_right<1>(w_error[kind]);  // as of a texel that repeats
     trail.put(p.step, keep(p.here, select(coded, error, kept)));
   };
