@@ -65,7 +65,7 @@ int run(int argc, char** argv) {
   bool sound = true;
   for (const Isa isa : supported_isas()) {
     if (argc > 1 && to_string(isa) != argv[1]) continue;
-    for (const char* preset : {"fast", "strong"}) {
+    for (const char* preset : {"turbo", "fast", "strong"}) {
       sound &= measure(isa, preset, "colour", ddgi_irradiance(kGrid), seconds);
       sound &= measure(isa, preset, "visibility", ddgi_visibility(kGrid), seconds);
     }

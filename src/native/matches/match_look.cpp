@@ -159,14 +159,16 @@ bool may_match(const EncodeJob& job, std::size_t size, bool thorough, LookMemory
   const std::uint64_t looks = look.looks(), fresh = look.fresh(), again = look.again();
   // Little is fresh: ordinary chunks have a head.
   if (32 * fresh <= looks && (job.keyframe || 2 * again >= fresh)) return true;
-  // A sample shows few of the repeats from afar. They matter where all else is noise.
+  // A sample shows few of the repeats from afar. They matter where all else is noise, and where
+  // it takes more to say a record than where it was.
+  constexpr std::uint64_t kFar = 16 * kBit, kLong = kBit / 4;
+  const std::uint64_t literal = static_cast<std::uint64_t>(look.literal()) * job.desc.record.bytes;
   constexpr std::uint64_t kLittle = 1U << 14;
-  const bool many = 16 * again >= looks && (6 * size >= all || all <= kLittle);
+  const bool dear = literal >= kFar || 2 * look.in_long() >= again;
+  const bool many = 16 * again >= looks && (all <= kLittle || (6 * size >= all && dear));
   if (thorough && 2 * again >= looks) return true;
   if (again >= 3 && (many || 4 * size >= 3 * all)) return true;
   // The bytes of fresh records, or distances to where they were; and which are fresh.
-  constexpr std::uint64_t kFar = 16 * kBit, kLong = kBit / 4;
-  const std::uint64_t literal = static_cast<std::uint64_t>(look.literal()) * job.desc.record.bytes;
   std::uint64_t bits = (fresh - again) * literal + look.in_long() * std::min(kLong, literal) +
                        (again - look.in_long()) * std::min(kFar, literal);
   for (const std::uint64_t some : {fresh, looks - fresh}) {
