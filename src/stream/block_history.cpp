@@ -160,8 +160,8 @@ void BlockHistory::replace(BlockId id, std::span<const std::byte> records) noexc
   if (use_ == Use::server) digests_[id] = checksum(records);
 }
 
-/// Collects numbers without holders, one for each block. release() cannot do this, since threads
-/// may run it at once.
+/// Collects numbers without holders, one for each block, from where it stopped the last time.
+/// release() cannot do this, since threads may run it at once.
 void BlockHistory::make_room(std::size_t blocks) {
   for (auto it = stale_.begin(); it != stale_.end();) {
     const auto band = it++;
@@ -169,15 +169,27 @@ void BlockHistory::make_room(std::size_t blocks) {
     spare_.reserve(spare_.size() + 1);
     spare_.push_back(stale_.extract(band));
   }
+  constexpr std::size_t kRun = 64;
+  if (free_.size() < blocks + kRun) free_.resize(blocks + kRun);
   const std::size_t before = holders_.size();
-  free_.resize(before + blocks);
   std::size_t found = 0;
-  // Skips kNothing, whose count may overflow. Branch-free: holders have no order.
-  for (std::size_t id = kNothing + 1; id < before; ++id) {
-    free_[found] = static_cast<BlockId>(id);
-    found += holders_[id] == 0 ? 1 : 0;
+  const auto collect = [&](std::size_t id, std::size_t end) {
+    while (id < end && found < blocks) {
+      // Branch-free: holders have no order.
+      for (const std::size_t stop = std::min(end, id + kRun); id < stop; ++id) {
+        free_[found] = static_cast<BlockId>(id);
+        found += holders_[id] == 0 ? 1 : 0;
+      }
+    }
+  };
+  // Skips kNothing, whose count may overflow.
+  const std::size_t first = std::clamp<std::size_t>(next_free_, kNothing + 1, before);
+  collect(first, before);
+  collect(kNothing + 1, first);
+  if (found >= blocks) {
+    if (blocks > 0) next_free_ = free_[blocks - 1] + 1;
+    return;
   }
-  if (found >= blocks) return;
   const std::size_t after = before + blocks - found;
   records_.resize(after * block_bytes_);
   presence_.resize(after * presence_bytes_);

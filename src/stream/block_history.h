@@ -126,8 +126,9 @@ class BlockHistory {
   Bands stale_;
   std::vector<Bands::node_type> spare_;  ///< nodes to reuse
   Vector<BlockId> current_;
+  BlockId next_free_ = kNothing + 1;  ///< where to look for one
   // Scratch of publish().
-  Vector<BlockId> free_;  ///< at least one per block, ascending
+  Vector<BlockId> free_;  ///< at least one per block; ascending, then perhaps from the first on
   Vector<Published> published_;
   Vector<Scratch> scratch_;
 };
