@@ -340,10 +340,12 @@ bool encode_modelled(const Update& u, std::span<const std::uint32_t> positions,
   return true;
 }
 
+/// Of raw records: what may be tried in several ways.
+constexpr std::size_t kLittle = 1 << 16;
+
 /// Whether planes may be smaller than rows, and it costs little time to see: rows have tables of
-/// their own, and know no more than places of large components.
+/// their own, and low halves of large components are not told apart there.
 bool planes_may_pay(const Update& u, std::size_t raw_size) {
-  constexpr std::size_t kLittle = 1 << 16;
   const auto used = u.desc.record.used();
   return raw_size <= kLittle ||
          std::any_of(used.begin(), used.end(), [](const Component& one) { return one.bits > 16; });
@@ -364,9 +366,11 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
               out.begin() + static_cast<std::ptrdiff_t>(end));
     done = true;
   };
-  const auto rows = [&](std::size_t most) {
-    return encode_rows(u, positions, texels, settings.preset != Preset::turbo, most, w.rows,
-                       w.models.values, out);
+  const auto try_rows = [&](bool places) {
+    tried([&](std::size_t most) {
+      const RowChoice choice{settings.preset != Preset::turbo, places};
+      return encode_rows(u, positions, texels, choice, most, w.rows, w.models.values, out);
+    });
   };
   const bool by_rows = rows_pay(u, settings, positions);
   if (settings.matches_within != 0) {
@@ -374,14 +378,15 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
                           settings.preset == Preset::strong, w.matches, out);
   } else if (u.adaptive) {
     done = encode_adaptive(u, positions, texels, raw_size, w.models, out);
-    if (by_rows && settings.others) tried(rows);
+    if (by_rows && settings.others) try_rows(false);
   } else if (settings.preset == Preset::turbo && takes_tokens(u.desc)) {
     // Floats of few values are for palettes, which rows have.
-    if (by_rows && u.layout.low != 0) tried(rows);
+    if (by_rows && u.layout.low != 0) try_rows(false);
     if (!done)
       done = encode_tokens(u, positions, texels, settings.streams, raw_size, w.tokens, out);
   } else {
-    if (by_rows) tried(rows);
+    if (by_rows) try_rows(false);
+    if (by_rows && raw_size <= kLittle) try_rows(true);
     const bool tries = !done || (settings.others && planes_may_pay(u, raw_size));
     if (tries && is_small_box(u.box)) {
       tried([&](std::size_t most) {

@@ -32,10 +32,10 @@ struct RowMemory {
   std::vector<std::byte> forms_bytes;
 };
 
-/// Appends the chunk unless it would have more than `most` bytes, or halves and no `halves` are
-/// wanted; false then, and `out` is as it was.
+/// Appends the chunk unless it would have more than `most` bytes, or halves that are not wanted;
+/// false then, and `out` is as it was.
 bool encode_rows(const Update& u, std::span<const std::uint32_t> positions,
-                 const BlockTable& records, bool halves, std::size_t most, RowMemory& memory,
+                 const BlockTable& records, RowChoice choice, std::size_t most, RowMemory& memory,
                  ValueModel& values, std::vector<std::byte>& out);
 /// Checks what a chunk holds as far as that needs no blocks.
 Status check_rows(const TextureDesc& desc, std::span<const std::byte> bytes);

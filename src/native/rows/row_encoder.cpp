@@ -31,14 +31,14 @@ std::span<const Step> model(const Update& u, RowStrip& strip, RowMemory& memory)
 }  // namespace
 
 bool encode_rows(const Update& u, std::span<const std::uint32_t> positions,
-                 const BlockTable& records, bool halves, std::size_t most, RowMemory& memory,
+                 const BlockTable& records, RowChoice choice, std::size_t most, RowMemory& memory,
                  ValueModel& values, std::vector<std::byte>& out) {
   RowPlanes& planes = memory.planes;
   planes.lay_out(u, positions, true);
   if (u.mirrored) planes.load_mirror(u);
   for (const auto position : positions) planes.load(u, u.probes[position], records[position]);
   planes.to_ordinals();
-  if (!planes.choose_forms(halves, memory.forms)) return false;
+  if (!planes.choose_forms(choice, memory.forms)) return false;
   memory.forms_bytes.clear();
   values.reset();
   BinaryEncoder coder(memory.forms_bytes);

@@ -3,6 +3,7 @@
 #include "native/frame/workspace.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 
 namespace gicodec::native {
@@ -10,6 +11,21 @@ namespace gicodec::native {
 bool takes_rows(const TextureDesc& desc) noexcept { return takes_raster(desc); }
 
 namespace {
+
+/// Whether places save more than the list of ordinals takes, about. Where most follow one another,
+/// there is little between a value and its prediction that does not occur.
+bool places_pay(std::span<const std::uint32_t> ordinals, std::size_t texels) {
+  constexpr std::uint64_t kShare = 32;  // one of so many bits between ordinals is saved
+  std::uint64_t between = 0, next = 0;
+  for (std::size_t i = 1; i < ordinals.size(); ++i) {
+    const std::uint32_t gap = ordinals[i] - ordinals[i - 1];
+    between += static_cast<std::uint64_t>(std::bit_width(gap)) - 1;
+    next += gap == 1 ? 1 : 0;
+  }
+  const std::uint64_t gaps = ordinals.size() - 1;
+  const std::uint64_t list = 2 * between + std::min(gaps, 3 * std::min(next, gaps - next));
+  return between * texels > kShare * gaps * list;
+}
 
 std::size_t round_up(std::size_t n, std::size_t to) { return (n + to - 1) / to * to; }
 
@@ -214,7 +230,7 @@ bool RowPlanes::is_copy(unsigned c, unsigned of) {
   return true;
 }
 
-bool RowPlanes::choose_forms(bool halves, ChannelForms& forms) {
+bool RowPlanes::choose_forms(RowChoice choice, ChannelForms& forms) {
   forms.begin(channels_);
   for (unsigned c = 0; c < channels_.count; ++c) {
     const bool found = find_ordinals(c);
@@ -224,8 +240,10 @@ bool RowPlanes::choose_forms(bool halves, ChannelForms& forms) {
       if (copied) forms.choose_copy(c, a);
     }
     if (copied) continue;
-    forms.choose(c, ordinals_, texels(), found);
-    if (has_halves(forms, c) && !halves) return false;
+    const bool places = is_wide(c) || channels_.channel[c].in_units || choice.places ||
+                        places_pay(ordinals_, texels());
+    forms.choose(c, ordinals_, texels(), found && places);
+    if (has_halves(forms, c) && !choice.halves) return false;
   }
   return true;
 }

@@ -16,6 +16,12 @@ namespace gicodec::native {
 
 struct Update;
 
+/// What an encoder may do to channels.
+struct RowChoice {
+  bool halves;  ///< code those of more than 16 bits in halves
+  bool places;  ///< count in places wherever there are few, also where that should not pay
+};
+
 /// The least box of blocks around those listed, all texels of which are coded; the rows of its
 /// slices stand below one another. Planes are channels in places, or in 16-bit words; those of wide
 /// channels, of more than 16 bits, are places or high halves, and behind all channels follow their
@@ -32,8 +38,8 @@ class RowPlanes {
   void to_ordinals();
   void to_bits();
 
-  /// False if that would need more planes than there may be, or low halves and none are wanted.
-  [[nodiscard]] bool choose_forms(bool halves, ChannelForms& forms);
+  /// False if that would need halves that are not wanted.
+  [[nodiscard]] bool choose_forms(RowChoice choice, ChannelForms& forms);
   /// Lists the planes that are coded by those forms; false if there are too many.
   [[nodiscard]] bool list_coded(const ChannelForms& forms);
   [[nodiscard]] std::span<const std::uint8_t> coded() const {
