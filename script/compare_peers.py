@@ -1,9 +1,9 @@
 """Peers of script/compare that need more than zstd and xz: each takes the texels of one texture in one frame and gives
 a row, or nothing where it is not installed or does not know the format. Every row was decoded to the same bits.
 
-OpenEXR, pcodec, OpenZL and meshoptimizer are Python packages (script/bootstrap peers); cjxl is a Debian package.
+OpenEXR, pcodec and OpenZL are Python packages, JPEG XL and meshoptimizer Debian packages: script/bootstrap peers.
 """
-import resource, shutil, subprocess, sys, tempfile
+import ctypes, ctypes.util, resource, shutil, subprocess, sys, tempfile
 from pathlib import Path
 
 try:
@@ -185,22 +185,29 @@ def openzl(texels, size, word, extent, format):
 
 def meshoptimizer(texels, size, word, extent, format):
     """Its vertex codec, then zstd, as glTF files have it."""
-    if numpy is None or size % 4 != 0:
+    name = ctypes.util.find_library('meshoptimizer')
+    if name is None or size % 4 != 0:
         return []
-    try:
-        import meshoptimizer as codec
-    except ImportError:
-        return []
-    # The package's decoder makes room for floats alone.
-    records = numpy.frombuffer(texels, dtype='<f4').reshape(-1, size // 4)
+    library = ctypes.CDLL(name)
+    count = len(texels) // size
+    for function in (library.meshopt_encodeVertexBufferBound, library.meshopt_encodeVertexBuffer):
+        function.restype = ctypes.c_size_t
+    sizes = (ctypes.c_size_t(count), ctypes.c_size_t(size))
+
+    def zstd(level, data):
+        return subprocess.run(['zstd', level, '-c', '-q'], input=data, check=True, capture_output=True).stdout
 
     def encode():
-        vertices = codec.encode_vertex_buffer(records, len(records), size)
-        return subprocess.run(['zstd', '-19', '-c', '-q'], input=vertices, check=True, capture_output=True).stdout
+        room = ctypes.create_string_buffer(library.meshopt_encodeVertexBufferBound(*sizes))
+        used = library.meshopt_encodeVertexBuffer(room, ctypes.c_size_t(len(room)), texels, *sizes)
+        return zstd('-19', room.raw[:used])
 
     def decode(packed):
-        vertices = subprocess.run(['zstd', '-dc', '-q'], input=packed, check=True, capture_output=True).stdout
-        return codec.decode_vertex_buffer(len(records), size, vertices).tobytes()
+        vertices = zstd('-d', packed)
+        out = ctypes.create_string_buffer(len(texels))
+        if library.meshopt_decodeVertexBuffer(out, *sizes, vertices, ctypes.c_size_t(len(vertices))) != 0:
+            raise RuntimeError('meshopt refused its own bytes')
+        return out.raw
     return [row('meshopt', encode, decode, texels)]
 
 

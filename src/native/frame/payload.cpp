@@ -236,7 +236,7 @@ void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa i
       (!strong || !may_match(job, out.size() - begin, true, memory.look)))
     return;
   other.box = large_box(job.desc);
-  other.chunk.matches_within = out.size() - begin;
+  other.chunk.matches_within = of_fast;
   try_as(other);
   if (!strong) return;
   other.chunk.preset = Preset::strong;

@@ -91,6 +91,9 @@ bool encode_matches(const Update& u, std::span<const std::uint32_t> positions,
   };
   const auto try_thoroughly = [&] {
     constexpr unsigned kLooks = 64;
+    // A thorough parse takes little less.
+    const auto look = look_quickly(order, distances, u.desc.record.bytes, kSparse, memory);
+    if (look.price > static_cast<Price>(smallest) * 9 * kBit) return;
     parse_bytes(distances, kLooks, memory);
     for (unsigned l = 0; l < kLiterals; ++l) {
       const auto literals = static_cast<Literals>(l);

@@ -166,16 +166,22 @@ bool may_match(const EncodeJob& job, std::size_t size, bool thorough, LookMemory
   constexpr std::uint64_t kLittle = 1U << 14;
   const bool dear = literal >= kFar || 2 * look.in_long() >= again;
   const bool many = 16 * again >= looks && (all <= kLittle || (6 * size >= all && dear));
-  if (thorough && 2 * again >= looks) return true;
+  // What ordinary chunks make very small may be smaller still, also where no record is seen again.
+  constexpr std::uint64_t kSmall = 24, kQuick = 1U << 20;
+  if (thorough && (2 * again >= looks || (kSmall * size <= all && (job.keyframe || all <= kQuick))))
+    return true;
   if (again >= 3 && (many || 4 * size >= 3 * all)) return true;
   // The bytes of fresh records, or distances to where they were; and which are fresh.
+  // Where few were not seen before, what is said is which of these.
+  const std::uint64_t which = kBit * (2 * std::bit_width(fresh - again) + 1);
+  const std::uint64_t far = std::min({kFar, which, literal});
   std::uint64_t bits = (fresh - again) * literal + look.in_long() * std::min(kLong, literal) +
-                       (again - look.in_long()) * std::min(kFar, literal);
+                       (again - look.in_long()) * far;
   for (const std::uint64_t some : {fresh, looks - fresh}) {
     if (some != 0) bits += some * static_cast<std::uint64_t>(log2_of(looks) - log2_of(some));
   }
   // What a sample of noise shows is a little less than noise.
-  const std::size_t more = thorough ? size / 4 : 0;
+  const std::size_t more = thorough && again > 0 ? size / 8 : 0;
   const std::uint64_t most =
       std::min<std::uint64_t>(size + more + (size + more) / 32, all - all / 32);
   return bits * records / looks / (8 * kBit) <= most;
