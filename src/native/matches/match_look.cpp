@@ -164,7 +164,12 @@ bool may_match(const EncodeJob& job, std::size_t size, bool thorough, LookMemory
   constexpr std::uint64_t kFar = 16 * kBit, kLong = kBit / 4;
   const std::uint64_t literal = static_cast<std::uint64_t>(look.literal()) * job.desc.record.bytes;
   constexpr std::uint64_t kLittle = 1U << 14;
-  const bool dear = literal >= kFar || 2 * look.in_long() >= again;
+  // By the number of repeats among so few, records are one of about so many.
+  const std::uint64_t others = again == 0 ? looks : looks * looks / (2 * again);
+  const std::uint64_t one_of =
+      static_cast<std::uint64_t>(log2_of(std::max<std::uint64_t>(others, 1)));
+  const bool dear = 2 * look.in_long() >= again ||
+                    (literal >= kFar && fresh * one_of * records / looks / (8 * kBit) <= size);
   const bool many = 16 * again >= looks && (all <= kLittle || (6 * size >= all && dear));
   // What ordinary chunks make very small may be smaller still, also where no record is seen again.
   constexpr std::uint64_t kSmall = 24, kQuick = 1U << 20;
