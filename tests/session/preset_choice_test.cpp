@@ -165,6 +165,16 @@ TEST(ProcessorTime, LearnsThePaceOfTheMachine) {
   EXPECT_NEAR(time.pace()[kFast], 0.5, 0.01);
 }
 
+/// Much is published of which little is coded, as when a client joins.
+TEST(ProcessorTime, PublishingIsNotCoding) {
+  ProcessorTime time;
+  time.report(0.02, 0.1, {0, 0.0005, 0}, 0.0095);
+  EXPECT_NEAR(time.pace()[kFast], 2, 0.01);
+  EXPECT_NEAR(time.pace()[kTurbo], 2, 0.01);
+  for (int i = 0; i < kMany; ++i) time.report(0.01, 0.1, {0.0005, 0, 0}, 0.0095);
+  EXPECT_NEAR(time.pace()[kFast], 1, 0.01);
+}
+
 /// A preset that takes longer than others here is known for that, and forgotten after a while.
 TEST(ProcessorTime, LearnsThePaceOfEachPreset) {
   ProcessorTime time;

@@ -174,6 +174,8 @@ Status Distributor::publish(std::uint16_t volume, std::uint8_t texture, ConstTex
     }
     history.publish(*checked, blocks, presence);
     // From here on nothing can fail.
+    const std::size_t records = blocks.size() * block_bytes(history.desc());
+    state_->published_seconds += static_cast<double>(records) * PresetCosts::kPublished;
     for (std::uint32_t block = 0; block < before.size(); ++block) {
       if (history.current()[block] == before[block]) continue;
       if (of.linked) of.note_change(*at.bundle, served, block, before[block], state_->updates);

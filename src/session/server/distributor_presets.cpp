@@ -2,6 +2,7 @@
 #include "session/server/distributor_state.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace gicodec {
 
@@ -21,7 +22,7 @@ void Distributor::report_update_time(double elapsed, double budget) noexcept {
   state_->for_each_region([&](const ServedVolume&, const Bundle&, const SharedRegion& region) {
     add(region.costs, state_->shared_preset.preset());
   });
-  state_->time.report(elapsed, budget, coded);
+  state_->time.report(elapsed, budget, coded, state_->updated_seconds);
 }
 
 bool Distributor::State::chooses_presets() const noexcept {
@@ -48,6 +49,7 @@ void Distributor::State::choose_presets() {
     if (!client->rate.slowed()) std::swap(throughputs[keep_pace++], throughputs.back());
   }
   // From here on nothing can fail.
+  updated_seconds = std::exchange(published_seconds, 0);
   constexpr std::size_t kEnough = 3;
   const bool all = keep_pace < kEnough || 2 * keep_pace < throughputs.size();
   const std::size_t count = all ? throughputs.size() : keep_pace;

@@ -234,6 +234,8 @@ struct Distributor::State {
   std::uint64_t updates = 0;
   std::uint32_t limit_for_few = 0;  ///< 0: no limit
   ProcessorTime time;
+  /// PresetCosts::kPublished of what was published since the last update, and before it.
+  double published_seconds = 0, updated_seconds = 0;
   PresetChoice shared_preset;         ///< of the packets of regions
   std::uint32_t shared_clients = 0;   ///< that are not suspended
   std::vector<double> throughputs;    ///< of these

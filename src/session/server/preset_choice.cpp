@@ -7,7 +7,7 @@ namespace gicodec {
 namespace {
 
 /// What native takes for a model: seconds per byte of records, with 1 ns for all else that a server
-/// does for them, and bytes by those of "fast".
+/// does for a client, and bytes by those of "fast".
 struct ModelCosts {
   Model model;
   ByPreset seconds, bytes;
@@ -65,24 +65,25 @@ void PresetCosts::add(const PresetCosts& other) noexcept {
 }
 
 /// Presets that are in use learn their pace soon; others forget it slowly, and are tried again.
-void ProcessorTime::learn(double elapsed, const ByPreset& coded) noexcept {
+void ProcessorTime::learn(double elapsed, const ByPreset& coded, double other) noexcept {
   constexpr double kMeasurable = 1e-4;  ///< seconds; less says little about coding
   constexpr double kForget = 1.0 / 256, kMin = 1.0 / 8, kMax = 64;
   const double all = std::accumulate(coded.begin(), coded.end(), 0.0);
   if (all < kMeasurable) return;
-  const double pace = std::clamp(elapsed / all, kMin, kMax);
+  const double pace = std::clamp(elapsed / (all + other), kMin, kMax);
   for (std::size_t i = 0; i < kPresets.size(); ++i) {
-    const double share = coded[i] / all;
+    const double share = coded[i] / (all + other);
     const double weight = measured_[i] ? std::max(kWeight * share, kForget) : 1;
     pace_[i] += weight * (pace - pace_[i]);
     measured_[i] = measured_[i] || 2 * share > 1;
   }
 }
 
-void ProcessorTime::report(double elapsed, double budget, const ByPreset& coded) noexcept {
+void ProcessorTime::report(double elapsed, double budget, const ByPreset& coded,
+                           double other) noexcept {
   constexpr double kRoom = 0.5;  ///< of the budget: leaves time for a slower preset
   constexpr std::uint32_t kMaxWait = 1024;
-  learn(elapsed, coded);
+  learn(elapsed, coded, other);
   ++in_time_;
   if (elapsed > budget) {
     if (slowest_ != kTurbo) wait_[slowest_] = std::min(2 * wait_[slowest_], kMaxWait);

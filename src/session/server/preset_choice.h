@@ -21,6 +21,8 @@ using ByPreset = std::array<double, kPresets.size()>;
 
 /// What packets take, by preset: seconds of coding on a usual core, and bytes for each client.
 struct PresetCosts {
+  /// For each byte of records that is published, coded or not.
+  static constexpr double kPublished = 1e-9;
   ByPreset seconds{}, bytes{};
 
   /// Adds a packet of so many blocks that took `size` bytes in `preset` and goes to this share of
@@ -34,8 +36,8 @@ struct PresetCosts {
 class ProcessorTime {
  public:
   /// An update took `elapsed` of `budget` seconds; `coded`: the seconds of PresetCosts of its
-  /// packets, by the preset that they have.
-  void report(double elapsed, double budget, const ByPreset& coded) noexcept;
+  /// packets, by the preset that they have; `other`: such seconds for all else.
+  void report(double elapsed, double budget, const ByPreset& coded, double other = 0) noexcept;
   /// Seconds that coding takes here for one of PresetCosts.
   [[nodiscard]] const ByPreset& pace() const noexcept { return pace_; }
   /// The slowest preset that there is time for: turbo after an update beyond its budget, then
@@ -45,7 +47,7 @@ class ProcessorTime {
  private:
   static constexpr std::uint32_t kMinWait = 8;
 
-  void learn(double elapsed, const ByPreset& coded) noexcept;
+  void learn(double elapsed, const ByPreset& coded, double other) noexcept;
 
   std::size_t slowest_ = kFast;
   std::uint32_t in_time_ = 0;  ///< updates within their budgets since `slowest_` changed
