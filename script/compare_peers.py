@@ -220,5 +220,6 @@ def rows_of(texels, size, word, extent, format):
         try:
             rows += peer(texels, size, word, extent, format)
         except (RuntimeError, subprocess.CalledProcessError) as error:
-            print(f'compare: {peer.__name__} failed and is left out: {error}', file=sys.stderr)
+            said = error if isinstance(error, RuntimeError) else f'{error.cmd[0]} ended with {error.returncode}'
+            print(f'compare: {peer.__name__} is left out: {said}', file=sys.stderr)
     return rows
