@@ -185,11 +185,15 @@ void BlockHistory::make_room(std::size_t blocks) {
   // Skips kNothing, whose count may overflow.
   const std::size_t first = std::clamp<std::size_t>(next_free_, kNothing + 1, before);
   collect(first, before);
+  const auto wrapped = static_cast<std::ptrdiff_t>(found);
   collect(kNothing + 1, first);
   if (found >= blocks) {
     if (blocks > 0) next_free_ = free_[blocks - 1] + 1;
     return;
   }
+  // Ascending: numbers as far apart as their places are consecutive.
+  std::rotate(free_.begin(), free_.begin() + wrapped,
+              free_.begin() + static_cast<std::ptrdiff_t>(found));
   const std::size_t after = before + blocks - found;
   records_.resize(after * block_bytes_);
   presence_.resize(after * presence_bytes_);

@@ -128,7 +128,7 @@ class BlockHistory {
   Vector<BlockId> current_;
   BlockId next_free_ = kNothing + 1;  ///< where to look for one
   // Scratch of publish().
-  Vector<BlockId> free_;  ///< at least one per block; ascending, then perhaps from the first on
+  Vector<BlockId> free_;  ///< at least one per block, ascending but for one step back at most
   Vector<Published> published_;
   Vector<Scratch> scratch_;
 };
