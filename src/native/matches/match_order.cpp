@@ -105,9 +105,7 @@ Orders find_orders(const Update& u, std::span<const std::uint32_t> positions,
         .price;
   };
   Orders orders;
-  for (unsigned d = 0; d < kDifferences; ++d) {
-    const auto difference = static_cast<Difference>(d);
-    if (difference == Difference::past && !u.update) continue;
+  const auto look_at = [&](Difference difference) {
     for (const bool planes : {false, true}) {
       const ByteOrder order{difference, planes};
       read_bytes(u, some, texels, order, memory.bytes);
@@ -115,7 +113,14 @@ Orders find_orders(const Update& u, std::span<const std::uint32_t> positions,
       if (after) price = std::min(price, entropy_after(memory.bytes, memory.counts));
       if (price <= largest) orders.add({price, order});
     }
-  }
+  };
+  if (u.update) look_at(Difference::past);
+  // Where little differs from the past, nothing else is worth a look.
+  constexpr Price kLittle = 16;
+  const Price plain = static_cast<Price>(blocks * u.block_bytes()) * 8 * kBit;
+  if (orders.count != 0 && kLittle * orders.best[0].price <= plain) return orders;
+  for (const auto difference : {Difference::none, Difference::before, Difference::above})
+    look_at(difference);
   if (blocks == positions.size()) return orders;
   // What repeats from afar shows in all records alone.
   read_bytes(u, positions, texels, {}, memory.bytes);
