@@ -91,7 +91,7 @@ void Orders::add(const One& one) {
 }
 
 Orders find_orders(const Update& u, std::span<const std::uint32_t> positions,
-                   const BlockTable& texels, std::size_t most, bool after, MatchMemory& memory) {
+                   const BlockTable& texels, std::size_t most, bool thorough, MatchMemory& memory) {
   // At some blocks in the middle. What is seen there is larger than what it becomes.
   constexpr std::size_t kLook = 1U << 16;
   constexpr unsigned kSparse = 4;
@@ -110,15 +110,15 @@ Orders find_orders(const Update& u, std::span<const std::uint32_t> positions,
       const ByteOrder order{difference, planes};
       read_bytes(u, some, texels, order, memory.bytes);
       Price price = look(order, blocks);
-      if (after) price = std::min(price, entropy_after(memory.bytes, memory.counts));
+      if (thorough) price = std::min(price, entropy_after(memory.bytes, memory.counts));
       if (price <= largest) orders.add({price, order});
     }
   };
   if (u.update) look_at(Difference::past);
-  // Where little differs from the past, nothing else is worth a look.
+  // Where little differs from the past, nothing else is worth the time of fast.
   constexpr Price kLittle = 16;
   const Price plain = static_cast<Price>(blocks * u.block_bytes()) * 8 * kBit;
-  if (orders.count != 0 && kLittle * orders.best[0].price <= plain) return orders;
+  if (!thorough && orders.count != 0 && kLittle * orders.best[0].price <= plain) return orders;
   for (const auto difference : {Difference::none, Difference::before, Difference::above})
     look_at(difference);
   if (blocks == positions.size()) return orders;

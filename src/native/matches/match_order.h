@@ -38,10 +38,10 @@ struct Orders {
 
   void add(const One& one);
 };
-/// Those that a quick look expects to have about that many bytes or fewer. `after`: literals may be
-/// Literals::after.
+/// Those that a quick look expects to have about that many bytes or fewer. `thorough`: literals may
+/// be Literals::after, and all are looked at.
 [[nodiscard]] Orders find_orders(const Update& u, std::span<const std::uint32_t> positions,
-                                 const BlockTable& texels, std::size_t most, bool after,
+                                 const BlockTable& texels, std::size_t most, bool thorough,
                                  MatchMemory& memory);
 
 }  // namespace gicodec::native
