@@ -130,7 +130,7 @@ def jpeg_xl(texels, size, word, extent, format):
 
 
 def pcodec(texels, size, word, extent, format):
-    """The best of components together and one by one."""
+    """Each component on its own."""
     if numpy is None or word == 1 or 'BLOCK' in format:
         return []
     try:

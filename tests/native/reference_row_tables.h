@@ -37,14 +37,8 @@ struct RowTables {
 
   /// `follow`, `lows`: how many channels there are of these.
   bool read(Bytes& in, bool exponent, std::size_t follow, std::size_t lows) {
-    const unsigned n = in.u8();
-    if (n < 1 || n > 16) return false;
-    for (unsigned i = 0; i < n; ++i) {
-      const unsigned end0 = in.u16(), end1 = in.u16();
-      if (end0 < 1 || end0 >= end1 || end1 > 4095) return false;
-      repeats.distributions[i] = {end0, end1};
-    }
-    if (!read_map(in, n, 180, repeats.map)) return false;
+    const unsigned n = read_repeats(in, repeats.distributions);
+    if (n == 0 || !read_map(in, n, 180, repeats.map)) return false;
     const std::size_t entries[3] = {exponent ? 128U : 64U,
                                     follow == 0   ? 0U
                                     : follow == 1 ? 128U

@@ -87,14 +87,20 @@ bool read_sets(Bytes& in, Sets& sets) {
   return !in.failed();
 }
 
-bool read_repeat_tables(Bytes& in, RepeatTables& repeats) {
-  const unsigned distributions = in.u8();
-  if (distributions < 1 || distributions > 16) return false;
-  for (unsigned m = 0; m < distributions; ++m) {
+unsigned read_repeats(Bytes& in, std::array<RepeatDistribution, 16>& distributions) {
+  const unsigned count = in.u8();
+  if (count > 16) return 0;
+  for (unsigned m = 0; m < count; ++m) {
     const unsigned end0 = in.u16(), end1 = in.u16();
-    if (end0 < 1 || end0 >= end1 || end1 > 4095) return false;
-    repeats.distributions[m] = {end0, end1};
+    if (end0 < 1 || end0 >= end1 || end1 > 4095) return 0;
+    distributions[m] = {end0, end1};
   }
+  return count;
+}
+
+bool read_repeat_tables(Bytes& in, RepeatTables& repeats) {
+  const unsigned distributions = read_repeats(in, repeats.distributions);
+  if (distributions == 0) return false;
   for (std::size_t i = 0; i < 64; i += 2) {
     const unsigned byte = in.u8();
     repeats.map[i] = byte & 15;

@@ -70,6 +70,8 @@ using Sets = std::array<unsigned, 4>;
 [[nodiscard]] Tables tables_of(const Sets& sets, bool pairs, bool update);
 
 [[nodiscard]] bool read_sets(Bytes& in, Sets& sets);
+/// Their number, then so many; 0 if they are refused.
+[[nodiscard]] unsigned read_repeats(Bytes& in, std::array<RepeatDistribution, 16>& distributions);
 [[nodiscard]] bool read_repeat_tables(Bytes& in, RepeatTables& repeats);
 [[nodiscard]] bool read_distribution(Bytes& in, Distribution& m);          ///< without its number
 [[nodiscard]] bool read_overrides(Bytes& in, DistributionTables& tables);  ///< those of one role

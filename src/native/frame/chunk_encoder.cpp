@@ -386,7 +386,7 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
       done = encode_tokens(u, positions, texels, settings.streams, raw_size, w.tokens, out);
   } else {
     if (by_rows) try_rows(false);
-    if (by_rows && raw_size <= kLittle) try_rows(true);
+    if (by_rows && raw_size <= kLittle && w.rows.planes.places_left_out()) try_rows(true);
     const bool tries = !done || (settings.others && planes_may_pay(u, raw_size));
     if (tries && is_small_box(u.box)) {
       tried([&](std::size_t most) {

@@ -91,9 +91,6 @@ bool encode_matches(const Update& u, std::span<const std::uint32_t> positions,
   };
   const auto try_thoroughly = [&] {
     constexpr unsigned kLooks = 64;
-    // A thorough parse takes little less.
-    const auto look = look_quickly(order, distances, u.desc.record.bytes, kSparse, memory);
-    if (look.price > static_cast<Price>(smallest) * 9 * kBit) return;
     parse_bytes(distances, kLooks, memory);
     for (unsigned l = 0; l < kLiterals; ++l) {
       const auto literals = static_cast<Literals>(l);
@@ -103,20 +100,21 @@ bool encode_matches(const Update& u, std::span<const std::uint32_t> positions,
   };
   const std::size_t size = positions.size() * u.block_bytes();
   const bool little = size <= kLittle;
-  const auto try_quickly = [&] {
+  const auto try_quickly = [&](Literals literals) {
     constexpr unsigned kLooks = 16;
-    const auto look = look_quickly(order, distances, u.desc.record.bytes, kSparse, memory);
-    if (look.price > static_cast<Price>(smallest) * 9 * kBit) return;
-    if (!little) return try_as(look.literals, write_quickly);
+    if (!little) return try_as(literals, write_quickly);
     parse_bytes(distances, kLooks, memory);
-    try_as(look.literals, write_parts);
+    try_as(literals, write_parts);
   };
   const std::size_t tries = thorough ? orders.count : little ? 2 : 1;
   for (std::size_t i = 0; i < std::min(tries, orders.count); ++i) {
     order = orders.best[i].order;
     distances = distances_of(u.desc, order, positions.size());
     read_bytes(u, positions, texels, order, memory.bytes);
-    thorough ? try_thoroughly() : try_quickly();
+    // A thorough parse takes little less.
+    const auto look = look_quickly(order, distances, u.desc.record.bytes, kSparse, memory);
+    if (look.price > static_cast<Price>(smallest) * 9 * kBit) continue;
+    thorough ? try_thoroughly() : try_quickly(look.literals);
   }
   return out.size() != begin;
 }

@@ -58,13 +58,9 @@ void RowPlanes::lay_out(const Update& u, std::span<const std::uint32_t> position
   rows_ = rows_of_slice_ * box_.blocks.z * u.desc.block.z;
   stride_ = round_up(columns_, 8) + kMargin;
   plane_ = (1 + rows_ + kLanes) * stride_ + 2 * kMargin;
-  wide_count_ = 0;
-  for (unsigned c = 0; c < channels_.count; ++c) {
-    if (!is_wide(c)) continue;
-    low_plane_[c] = static_cast<std::uint8_t>(channels_.count + wide_count_);
-    wide_channel_[wide_count_++] = static_cast<std::uint8_t>(c);
-  }
-  const std::size_t size = (channels_.count + wide_count_) * plane_;
+  bool wide = false;
+  for (unsigned c = 0; c < channels_.count; ++c) wide = wide || is_wide(c);
+  const std::size_t size = (wide ? 2 : 1) * channels_.count * plane_;
   if (values_.size() < size) values_.resize(size);
   if (zero) std::fill_n(values_.begin(), size, std::uint16_t{0});
   for (unsigned c = 0; c < channels_.count; ++c) {
@@ -232,6 +228,7 @@ bool RowPlanes::is_copy(unsigned c, unsigned of) {
 
 bool RowPlanes::choose_forms(RowChoice choice, ChannelForms& forms) {
   forms.begin(channels_);
+  places_left_out_ = false;
   for (unsigned c = 0; c < channels_.count; ++c) {
     const bool found = find_ordinals(c);
     bool copied = false;
@@ -240,9 +237,11 @@ bool RowPlanes::choose_forms(RowChoice choice, ChannelForms& forms) {
       if (copied) forms.choose_copy(c, a);
     }
     if (copied) continue;
-    const bool places = is_wide(c) || channels_.channel[c].in_units || choice.places ||
-                        places_pay(ordinals_, texels());
-    forms.choose(c, ordinals_, texels(), found && places);
+    forms.choose(c, ordinals_, texels(), found);
+    if (forms.has_places(c) && !is_wide(c) && !choice.places && !places_pay(ordinals_, texels())) {
+      forms.choose(c, ordinals_, texels(), false);
+      places_left_out_ = true;
+    }
     if (has_halves(forms, c) && !choice.halves) return false;
   }
   return true;
@@ -255,7 +254,7 @@ bool RowPlanes::list_coded(const ChannelForms& forms) {
   for (const unsigned c : channels) {
     if (!has_halves(forms, c)) continue;
     if (coded_count_ == coded_.size()) return false;
-    coded_[coded_count_++] = low_plane_[c];
+    coded_[coded_count_++] = static_cast<std::uint8_t>(low_plane(c));
   }
   return true;
 }
@@ -274,7 +273,7 @@ void RowPlanes::wide_to_planes(const ChannelForms& forms, unsigned c) {
       }
       continue;
     }
-    std::uint16_t* const low = row(low_plane_[c], y);
+    std::uint16_t* const low = row(low_plane(c), y);
     for (std::size_t x = 0; x < columns_; ++x) {
       to[x] = static_cast<std::uint16_t>(from[x] >> 16);
       low[x] = static_cast<std::uint16_t>(from[x]);
@@ -294,7 +293,7 @@ void RowPlanes::wide_from_planes(const ChannelForms& forms, unsigned c) {
   const bool halves = has_halves(forms, c);
   for (std::size_t y = 0; y < rows_; ++y) {
     const std::uint16_t* const from = row(c, y);
-    const std::uint16_t* const low = row(halves ? low_plane_[c] : c, y);
+    const std::uint16_t* const low = row(halves ? low_plane(c) : c, y);
     std::uint32_t* const to = wide(c, y);
     for (std::size_t x = 0; x < columns_; ++x) {
       to[x] = halves ? static_cast<std::uint32_t>(from[x]) << 16 | low[x] : form.palette[from[x]];

@@ -40,6 +40,8 @@ class RowPlanes {
 
   /// False if that would need halves that are not wanted.
   [[nodiscard]] bool choose_forms(RowChoice choice, ChannelForms& forms);
+  /// Whether RowChoice::places would have changed that choice.
+  [[nodiscard]] bool places_left_out() const { return places_left_out_; }
   /// Lists the planes that are coded by those forms; false if there are too many.
   [[nodiscard]] bool list_coded(const ChannelForms& forms);
   [[nodiscard]] std::span<const std::uint8_t> coded() const {
@@ -47,7 +49,7 @@ class RowPlanes {
   }
   [[nodiscard]] bool is_low(unsigned plane) const { return plane >= channels_.count; }
   [[nodiscard]] unsigned channel_of(unsigned plane) const {
-    return is_low(plane) ? wide_channel_[plane - channels_.count] : plane;
+    return is_low(plane) ? plane - channels_.count : plane;
   }
   /// Ordinals ↔ what is coded. An ordinal that is not in a palette has the place of the next one.
   void to_planes(const ChannelForms& forms);
@@ -84,6 +86,7 @@ class RowPlanes {
   void flip(unsigned channel);
   [[nodiscard]] bool find_ordinals(unsigned channel);
   [[nodiscard]] bool is_copy(unsigned channel, unsigned of);
+  [[nodiscard]] unsigned low_plane(unsigned channel) const { return channels_.count + channel; }
   [[nodiscard]] bool has_halves(const ChannelForms& forms, unsigned channel) const {
     return is_wide(channel) && forms[channel].form == Form::plain;
   }
@@ -95,8 +98,9 @@ class RowPlanes {
   BlockBox box_;
   std::size_t columns_ = 0, rows_ = 0, stride_ = 0, plane_ = 0;
   std::size_t rows_of_slice_ = 0;
-  std::array<std::uint8_t, kMaxComponents> wide_channel_{}, low_plane_{}, coded_{};
-  unsigned wide_count_ = 0, coded_count_ = 0;
+  std::array<std::uint8_t, kMaxComponents> coded_{};
+  unsigned coded_count_ = 0;
+  bool places_left_out_ = false;
   Vector<std::uint16_t> values_, block_;
   std::array<Vector<std::uint32_t>, kMaxComponents> wide_;  ///< [y][x] of channels above 16 bits
   Vector<std::uint32_t> ordinals_;
