@@ -2,6 +2,7 @@
 
 using Reg = __m128i;
 inline constexpr int kRegs = 4;
+#define GICODEC_STEP [[gnu::noinline]]
 #define GICODEC_V(op) _mm_##op
 #define GICODEC_BITS(op) _mm_##op##_si128
 GICODEC_INLINE Reg load_reg(const void* p) {

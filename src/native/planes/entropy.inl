@@ -85,8 +85,8 @@ GICODEC_INLINE I16 decode_token_lanes(const RoleTables& tables, I16 contexts, st
   return load(value);
 }
 /// One token step and its raw bits. Values of inactive lanes are unspecified.
-GICODEC_INLINE I16 decode_tokens(const RoleTables& tables, I16 context, std::uint32_t active,
-                                 Input& in) {
+GICODEC_STEP I16 decode_tokens(const RoleTables& tables, I16 context, std::uint32_t active,
+                               Input& in) {
   if constexpr (!kByteLookups) return decode_token_lanes(tables, context, active, in);
   States x = load_states(in);
   const I16 slot = slot_of(x);
@@ -184,8 +184,8 @@ GICODEC_INLINE RepeatEnds find_ends(const RowRepeats& t, I16 context) {
 
 /// Repeat symbols 0, 1, 2 by comparing with the ends of the first two.
 template <typename Repeats>
-GICODEC_INLINE I16 decode_repeats(const Repeats& tables, I16 context, std::uint32_t active,
-                                  Input& in) {
+GICODEC_STEP I16 decode_repeats(const Repeats& tables, I16 context, std::uint32_t active,
+                                Input& in) {
   States x = load_states(in);
   const RepeatEnds ends = find_ends(tables, context);
   const I16 slot = slot_of(x);
