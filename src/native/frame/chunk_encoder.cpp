@@ -173,6 +173,9 @@ class ChunkEncoder {
     return model(g, exact_ ? &planned : nullptr);
   }
 
+  /// Bytes, by the groups that plan() has seen and by the set alone.
+  [[nodiscard]] std::uint64_t expected() const { return bytes_; }
+
  private:
   void start() {
     w_.modelled.assign(w_.chunk.groups(), {});
@@ -254,9 +257,9 @@ class ChunkEncoder {
   const EncodeSettings& settings_;
   ChunkHead& head_;
   Workspace& w_;
-  std::size_t kept_ = 0;     // groups whose steps are kept
-  std::uint64_t bytes_ = 0;  // expected, by the set alone
-  bool exact_ = false;       // modes by their exact cost
+  std::size_t kept_ = 0;  // groups whose steps are kept
+  std::uint64_t bytes_ = 0;
+  bool exact_ = false;  // modes by their exact cost
 };
 
 void encode_raw(const Update& u, std::span<const std::uint32_t> positions, const BlockTable& texels,
@@ -308,9 +311,10 @@ bool encode_modelled(const Update& u, std::span<const std::uint32_t> positions,
   }
   w.set_head(u);
   w.reserve_steps(u, 1 + most_kept(u));
-
   ChunkEncoder encoder(u, settings, head, w);
   const Tables& set = encoder.plan();
+  if (settings.preset != Preset::strong && encoder.expected() > most + most / 16 + kFewBytes)
+    return false;
 
   // Groups and steps backwards, words from the end of the buffer to its begin. Beyond the size of
   // raw texels there is room for one more group, whatever it holds.
@@ -343,14 +347,10 @@ bool encode_modelled(const Update& u, std::span<const std::uint32_t> positions,
 /// Of raw records: what may be tried in several ways.
 constexpr std::size_t kLittle = 1 << 16;
 
-/// Whether planes may be smaller than rows, and it costs little time to see: rows have tables of
-/// their own, and low halves of large components are not told apart there.
+/// Where rows have tables that cost much, or steps of large components that they do not see.
 bool planes_may_pay(const Update& u, std::size_t raw_size) {
-  const auto used = u.desc.record.used();
-  return raw_size <= kLittle ||
-         std::any_of(used.begin(), used.end(), [](const Component& one) { return one.bits > 16; });
+  return raw_size <= kLittle || u.layout.low != 0;
 }
-
 }  // namespace
 
 void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,

@@ -43,7 +43,7 @@ void ChannelForms::choose(unsigned channel, std::span<const std::uint32_t> ordin
   form.form = Form::plain;
   form.of = 0;
   form.palette.clear();
-  if (!palettes && ordinals.size() > 1) return;
+  if (!palettes && ordinals.size() != 1) return;
   if (!is_sparse(channels_.channel[channel], ordinals, texels)) return;
   form.form = Form::palette;
   form.palette.assign(ordinals.begin(), ordinals.end());

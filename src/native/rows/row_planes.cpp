@@ -27,6 +27,21 @@ bool places_pay(std::span<const std::uint32_t> ordinals, std::size_t texels) {
   return between * texels > kShare * gaps * list;
 }
 
+/// True only if more than `most` values occur: so many hashes of them do.
+bool surely_more(std::span<const std::uint32_t> values, std::size_t most,
+                 Vector<std::uint8_t>& occurs) {
+  constexpr unsigned kHashBits = 17;
+  occurs.assign(std::size_t{1} << kHashBits, 0);
+  std::size_t hashes = 0;
+  for (const std::uint32_t value : values) {
+    std::uint8_t& occurred = occurs[value * 0x9E3779B1U >> (32 - kHashBits)];
+    hashes += 1U - occurred;
+    occurred = 1;
+    if (hashes > most) return true;
+  }
+  return false;
+}
+
 std::size_t round_up(std::size_t n, std::size_t to) { return (n + to - 1) / to * to; }
 
 /// Rows of blocks, most of which have 8 texels.
@@ -201,14 +216,16 @@ bool RowPlanes::find_ordinals(unsigned c) {
     }
     return true;
   }
-  // Sorted and without doubles each time that as many came again: most channels have too many.
+  const std::size_t most = std::min<std::size_t>(texels() / 4 + 1, UINT16_MAX);
+  if (surely_more(wide_[c], most, occurs_)) return false;
+  // Sorted and without doubles each time that as many came again.
   constexpr std::size_t kFew = 1024;
   std::size_t known = 0;
   const auto tidy = [&] {
     std::sort(ordinals_.begin(), ordinals_.end());
     ordinals_.erase(std::unique(ordinals_.begin(), ordinals_.end()), ordinals_.end());
     known = ordinals_.size();
-    return known < texels() / 4 + 2 && known <= UINT16_MAX;
+    return known <= most;
   };
   for (const std::uint32_t value : wide_[c]) {
     if (!ordinals_.empty() && ordinals_.back() == value) continue;
