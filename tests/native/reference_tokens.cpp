@@ -48,7 +48,7 @@ bool TokenReader::read(unsigned first, Bytes& in) {
     if (constant_[p] < 0) list.push_back(p);
   }
   const auto is_low = [&](std::size_t plane) { return planes_.all()[plane].low; };
-  std::ranges::stable_partition(list, std::not_fn(is_low));
+  std::stable_partition(list.begin(), list.end(), std::not_fn(is_low));
   for (std::size_t at = 0; at < list.size();) {
     const auto bits = [&](std::size_t i) { return planes_.all()[list[at + i]].stored; };
     const std::size_t left = list.size() - at;
