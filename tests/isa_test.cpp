@@ -115,7 +115,7 @@ TEST(Isa, ThreadsDoNotChangeBytesOrTexels) {
 TEST(Isa, MachinesDoNotChangeBytes) {
   constexpr std::pair<Coding, std::uint32_t> kExpected[] = {
       {{"raw", 0, true}, 817718859},
-      {{"native", 0, true, "fast"}, 1483619173},
+      {{"native", 0, true, "fast"}, 4222012036},
       {kStrong, 287243258},
       {{"native", 0, true, "turbo"}, 3520221391}};
   for (const auto& [coding, expected] : kExpected) {

@@ -8,8 +8,8 @@
 /// Vector values stay in registers only if every function that handles them is inlined.
 #define GICODEC_INLINE [[gnu::always_inline]] inline
 #define GICODEC_INLINE_LAMBDA __attribute__((always_inline))
-// GICODEC_STEP, which each wrapper defines, is for what a kernel does several times in a texel: inlined
-// too, or out of line where the kernel would outgrow the cache of instructions.
+// GICODEC_STEP, which each wrapper defines, is for what a kernel does several times in a texel:
+// inlined too, or out of line where the kernel would outgrow the cache of instructions.
 /// Unrolls loops over arrays of vectors, which would otherwise live in memory. Off where lanes are
 /// array elements or nothing stays in registers anyway: compilers would only take minutes longer.
 #if defined(__has_feature)  // clang's test for sanitizers

@@ -15,9 +15,9 @@ inline ContainerDescription maps_description() {
     return group;
   };
   const TextureGroup groups[] = {
-      group_of("halves", Format::R16G16B16A16_SFLOAT, {40, 37, 1}),
-      group_of("packed", Format::B10G11R11_UFLOAT_PACK32, {48, 40, 1}),
-      group_of("shared", Format::E5B9G9R9_UFLOAT_PACK32, {57, 48, 1}),
+      group_of("halves", Format::R16G16B16A16_SFLOAT, {72, 37, 1}),
+      group_of("packed", Format::B10G11R11_UFLOAT_PACK32, {72, 64, 1}),
+      group_of("shared", Format::E5B9G9R9_UFLOAT_PACK32, {57, 72, 1}),
       group_of("floats", Format::R32_SFLOAT, {40, 37, 3}),
       group_of("precise", Format::R32G32_SFLOAT, {33, 40, 2}),
       group_of("repeated", Format::R8G8B8A8_UNORM, {40, 32, 1}),

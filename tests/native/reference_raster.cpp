@@ -21,7 +21,7 @@ bool may_be_rows(const TextureDesc& desc, const std::array<std::uint32_t, 3>& bo
                       ny = std::uint64_t{box[1]} * desc.block.y,
                       nz = std::uint64_t{box[2]} * desc.block.z;
   return may_be_raster(desc, box) &&
-         (nx + 72) * 32 * ((ny + 31) / 32) * nz * desc.record.count <= 1 << 20;
+         (nx + 72) * 32 * ((ny + 31) / 32) * nz * desc.record.count <= 9 << 18;
 }
 
 }  // namespace gicodec::reference

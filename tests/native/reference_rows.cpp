@@ -210,7 +210,8 @@ class Rows : RasterState {
     } else {
       p = 4 + one(same(v(NW), v(N)), 1) + one(same(v(NW), v(W)), 2) + one(same(v(N), v(NE)), 3);
     }
-    return static_cast<int>(18 * p + 6 * r(W) + 2 * r(N) + std::min<Number>(r(NE), 1));
+    const Number third = z_ > 0 ? repeats_[of_slice(t, Z)] : r(NE);
+    return static_cast<int>(18 * p + 6 * r(W) + 2 * r(N) + std::min<Number>(third, 1));
   }
 
   struct Coding {
@@ -300,7 +301,11 @@ class Rows : RasterState {
     };
     // As texels of one row, for the functions of planes.
     const std::vector<int> four{around(W), around(N), around(NW), around(NE)};
-    const Local local = local_context(four, reference::Around{0, 1, 2, 3});
+    Local local = local_context(four, reference::Around{0, 1, 2, 3});
+    if (z_ > 0) {
+      const int z = static_cast<int>(std::abs(residual_[of_slice(t, Z)][c]));
+      local.energy = capped(local.energy - local.energy / 4 + z + z / 2);
+    }
     const bool deep = bits(c) > 11;
     coding.flip = local.flip;
     if (is_low(c)) {

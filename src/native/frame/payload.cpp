@@ -65,6 +65,9 @@ bool adapts(const EncodeJob& job, const EncodeSettings& settings) {
                                        (records <= kTinyBlock ? kMaxTiny : kMaxSmall);
 }
 
+/// A 3D texture: each slice tells about the next. What is far off in a map tells nothing.
+bool is_deep(const TextureDesc& desc) { return desc.block.z > 1; }
+
 /// The largest that may be rows, up to that size.
 Grid box_of_rows(const TextureDesc& desc, const Grid& largest) {
   std::uint32_t blocks = largest.x * largest.y * largest.z;
@@ -75,18 +78,17 @@ Grid box_of_rows(const TextureDesc& desc, const Grid& largest) {
 
 /// What was learned in a chunk is lost to the others: each should have enough of the update.
 Grid box_of_adaptive(const EncodeJob& job) {
+  const bool raster = takes_raster(job.desc);
+  const unsigned slices = raster && is_deep(job.desc) ? 2 : 1;
   const std::uint64_t listed = std::max<std::size_t>(1, job.blocks.size());
-  const std::uint64_t blocks = model_of(job.desc).chunk_records / record_count(job.desc.block);
-  const std::uint64_t most = std::max<std::uint64_t>(blocks, 1) * block_count(job.desc) / listed;
+  const std::uint64_t records = std::uint64_t{slices} * model_of(job.desc).chunk_records;
+  const std::uint64_t blocks = std::max<std::uint64_t>(1, records / record_count(job.desc.block));
+  const std::uint64_t most = blocks * block_count(job.desc) / listed;
   const Grid large = large_box(job.desc);
-  if (takes_raster(job.desc)) {
-    const std::uint64_t fitting = std::min<std::uint64_t>(most, blocks_of_raster(job.desc));
-    const Grid box = default_box(job.desc.grid, static_cast<std::uint32_t>(fitting));
-    return box_of_rows(job.desc, box);
-  }
-  if (most >= std::uint64_t{large.x} * large.y * large.z) return large;
-  return default_box(job.desc.grid,
-                     static_cast<std::uint32_t>(std::min<std::uint64_t>(most, kMaxBoxSide)));
+  if (!raster && most >= std::uint64_t{large.x} * large.y * large.z) return large;
+  const std::uint64_t largest =
+      raster ? std::max(1U, blocks_of_raster(job.desc) * slices / 2) : kMaxBoxSide;
+  return default_box(job.desc.grid, static_cast<std::uint32_t>(std::min(most, largest)));
 }
 
 /// Runs body(item, workspace) for every item.
@@ -145,10 +147,14 @@ void encode(const EncodeJob& job, const PayloadSettings& settings, Isa isa, Payl
   const bool rows = !adaptive && (settings.chunk.preset != Preset::turbo || wide) &&
                     takes_rows(job.desc) &&
                     (job.keyframe || 2 * job.blocks.size() >= block_count(job.desc));
+  // Planes, which are tried for large components, need small boxes.
+  const Grid largest = is_deep(job.desc) && !wide
+                           ? default_box(job.desc.grid, blocks_of_raster(job.desc))
+                           : implicit_box;
   const Grid box = settings.box.x != 0                       ? settings.box
                    : adaptive                                ? box_of_adaptive(job)
                    : settings.chunk.preset == Preset::strong ? box_of_strong(job.desc, layout)
-                   : rows                                    ? box_of_rows(job.desc, implicit_box)
+                   : rows                                    ? box_of_rows(job.desc, largest)
                                                              : implicit_box;
   const bool modelled = !adaptive && settings.chunk.preset != Preset::turbo && (!rows || wide);
   if (modelled && settings.chunk.matches_within == 0)
@@ -207,6 +213,14 @@ void encode(const EncodeJob& job, const PayloadSettings& settings, Isa isa, Payl
   }
 }
 
+/// What fast codes by adaptive chunks too: of so little, tables of its own are a large part, and
+/// the time is some milliseconds.
+bool may_adapt_at_once(const EncodeJob& job) {
+  constexpr std::size_t kTiny = 1U << 14;
+  return job.keyframe && takes_raster(job.desc) && job.desc.record.count <= 4 &&
+         job.blocks.size() * block_bytes(job.desc) <= kTiny;
+}
+
 }  // namespace
 
 void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa isa,
@@ -229,6 +243,11 @@ void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa i
   PayloadSettings other = settings;
   other.chunk.preset = Preset::fast;
   const bool strong = wanted.preset == Preset::strong;
+  if (!strong && may_adapt_at_once(job)) {
+    other.chunk.preset = Preset::strong;
+    try_as(other);
+    other.chunk.preset = Preset::fast;
+  }
   const std::size_t of_fast = strong ? try_as(other) : out.size() - begin;
   if (!takes_matches(job.desc)) return;
   // Strong tries them wherever fast does, too.

@@ -21,7 +21,8 @@ inline constexpr std::size_t kMaxRasterValues = std::size_t{1} << 20;
 /// Whether a box may be a raster.
 [[nodiscard]] bool fits_raster(const TextureDesc& desc, const Grid& box) noexcept;
 /// The same of row chunks, whose strips have 32 rows with kRowMargin words beside each.
-inline constexpr std::size_t kRowMargin = 72, kMaxRowValues = std::size_t{1} << 20;
+/// 64³ texels of four channels are one.
+inline constexpr std::size_t kRowMargin = 72, kMaxRowValues = std::size_t{9} << 18;
 [[nodiscard]] bool fits_rows(const TextureDesc& desc, const Grid& box) noexcept;
 
 /// Blocks that a box may have to be one, at least 1.

@@ -25,8 +25,8 @@ struct RowMemory {
   RowPlanes past;  ///< in updates
   /// By channel: a strip's rows; those of the slice before and of the past, and each one row above.
   std::array<Vector<std::uint16_t>, kMaxComponents> lanes, slice, slice_above, past_lanes,
-      past_above, above, nearest, palette;
-  Vector<std::uint16_t> above_repeats, trail;
+      past_above, above, nearest, palette, z_residuals;
+  Vector<std::uint16_t> above_repeats, trail, z_repeats;
   Vector<Step> steps;
   Vector<std::byte> bytes;
   std::vector<std::byte> forms_bytes;

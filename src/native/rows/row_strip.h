@@ -31,6 +31,8 @@ struct RowChannel {
   // [step][lane], with a step before the first: of the slice before and in the mirror, there and in
   // the row above.
   const std::uint16_t *slice, *slice_above, *past, *past_above;
+  /// [step][lane], of the slice before and then of this one; null unless there are slices.
+  std::uint16_t* z_residuals;
   std::uint16_t* above;   ///< [trail][column] of the last row of the strip before, then of this one
   unsigned bits;          ///< of residuals
   std::uint16_t largest;  ///< value
@@ -49,8 +51,9 @@ struct RowStrip {
   bool update;  ///< there is a past
   unsigned channels, lead;
   RowChannel channel[kMaxComponents];
-  std::uint16_t* above;  ///< [column]: which texels of the row above repeat
-  std::uint16_t* trail;  ///< trail_size() values
+  std::uint16_t* above;      ///< [column]: which texels of the row above repeat
+  std::uint16_t* z_repeats;  ///< as z_residuals: which texels repeat
+  std::uint16_t* trail;      ///< trail_size() values
 };
 /// Words from a column to the next trail's in `above`.
 constexpr std::size_t above_stride(std::size_t columns) { return columns + 8; }

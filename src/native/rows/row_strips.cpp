@@ -37,6 +37,11 @@ void skew(const Kernels& kernels, RowPlanes& planes, unsigned plane, std::size_t
   kernels.to_lanes(rows, tiled_steps(planes), lanes);
 }
 
+/// Values of the lanes of all strips of a slice.
+std::size_t slice_lanes(const RowPlanes& planes) {
+  return (planes.rows_of_slice() + kLanes - 1) / kLanes * tiled_steps(planes) * kLanes;
+}
+
 /// Of lanes that follow a step that does not exist.
 void make_room(const RowPlanes& planes, Vector<std::uint16_t>& lanes) {
   lanes.assign((1 + tiled_steps(planes)) * kLanes, 0);
@@ -57,6 +62,7 @@ RowStrip prepare_strips(bool update, RowMemory& memory) {
   const Channels& channels = planes.channels();
   const auto coded = planes.coded();
   const std::size_t columns = planes.columns(), above = above_stride(columns);
+  const bool slices = planes.rows() > planes.rows_of_slice();
   RowStrip strip{};
   strip.columns = static_cast<unsigned>(columns);
   strip.update = update;
@@ -69,10 +75,10 @@ RowStrip prepare_strips(bool update, RowMemory& memory) {
     const auto& palette = forms[c].palette;
     RowChannel& to = strip.channel[k];
     memory.lanes[k].resize(tiled_steps(planes) * kLanes);
-    const bool slices = planes.rows() > planes.rows_of_slice();
     for (auto* lanes : {&memory.slice[k], &memory.slice_above[k]}) {
       if (slices) make_room(planes, *lanes);
     }
+    if (slices) memory.z_residuals[k].assign(slice_lanes(planes), 0);
     for (auto* lanes : {&memory.past_lanes[k], &memory.past_above[k]}) {
       if (update) make_room(planes, *lanes);
     }
@@ -106,6 +112,7 @@ RowStrip prepare_strips(bool update, RowMemory& memory) {
     }
   }
   memory.above_repeats.assign(above, 0);
+  if (slices) memory.z_repeats.assign(slice_lanes(planes), 0);
   memory.trail.resize(trail_size(strip.channels));
   strip.above = memory.above_repeats.data();
   strip.trail = memory.trail.data();
@@ -126,6 +133,9 @@ void move_to(const Kernels& kernels, RowStrip& strip, RowMemory& memory, std::si
   strip.rows = static_cast<unsigned>(std::min<std::size_t>(kLanes, left));
   strip.first = left == slice;
   strip.deep = y >= slice;
+  const bool slices = planes.rows() > slice;
+  const std::size_t of_slice = y % slice / kLanes * tiled_steps(planes) * kLanes;
+  strip.z_repeats = slices ? memory.z_repeats.data() + of_slice : nullptr;
   if (strip.first) {
     for (unsigned k = 0; k < strip.channels; ++k) {
       std::fill(memory.above[k].begin(), memory.above[k].end(), std::uint16_t{0});
@@ -134,6 +144,7 @@ void move_to(const Kernels& kernels, RowStrip& strip, RowMemory& memory, std::si
   }
   for (unsigned k = 0; k < strip.channels; ++k) {
     const unsigned plane = planes.coded()[k];
+    strip.channel[k].z_residuals = slices ? memory.z_residuals[k].data() + of_slice : nullptr;
     const auto load = [&](RowPlanes& from, std::size_t row, Vector<std::uint16_t>& there,
                           Vector<std::uint16_t>& above) {
       skew(kernels, from, plane, row, From::here, there.data() + kLanes);

@@ -16,6 +16,7 @@ constexpr int kMostError = 5461;
 /// What a strip has besides the rows above: most have neither a slice before nor a past.
 template <bool kFlat>
 struct Beside {
+  static bool slices(const RowStrip& s) { return !kFlat && s.z_repeats != nullptr; }
   static bool deep(const RowStrip& s) { return !kFlat && s.deep; }
   static bool update(const RowStrip& s) { return !kFlat && s.update; }
   static unsigned guesses(const RowStrip& s) { return kFlat ? 2 : row_guesses(s.deep, s.update); }

@@ -13,13 +13,24 @@ struct Leads {
   I16 first, second;
 };
 
+/// What residuals around say, and that of the slice before.
+template <bool kFlat>
+GICODEC_INLINE LocalContext local_context(const RowStrip& s, const RowPlace& p, unsigned k,
+                                          const Four& residuals) {
+  LocalContext local = local_context(residuals);
+  if (!Beside<kFlat>::deep(s)) return local;
+  const I16 z = magnitude(load(s.channel[k].z_residuals + p.values));
+  const I16 most = sub(local.energy, shift_right<2>(local.energy));
+  local.energy = add_sat(most, add_sat(z, shift_right<1>(z)));
+  return local;
+}
+
 /// The context of a residual by those around and before.
 struct RowContext {
   I16 context, flip;
 };
 GICODEC_INLINE RowContext row_context(const RowStrip& s, unsigned k, const Four& residuals,
-                                      const Leads& leads) {
-  LocalContext local = local_context(residuals);
+                                      const LocalContext& local, const Leads& leads) {
   const MagnitudeTables& magnitudes =
       is_wide(s.channel[k].bits) ? kWideMagnitudes : kNarrowMagnitudes;
   if (k <= s.lead) {
@@ -46,8 +57,7 @@ GICODEC_INLINE RowContext row_context(const RowStrip& s, unsigned k, const Four&
 }
 
 /// Of low halves, which are little but noise: how much, and whether the high half was as predicted.
-GICODEC_INLINE RowContext low_context(const Four& residuals, I16 high) {
-  const LocalContext local = local_context(residuals);
+GICODEC_INLINE RowContext low_context(const LocalContext& local, I16 high) {
   const I16 size = magnitude_class(local.energy, kWideMagnitudes);
   const I16 other = select(equal(high, set(0)), set(0), set(kRowClass));
   return {add(add(local.sign, size), other), local.flip};
@@ -98,9 +108,16 @@ GICODEC_INLINE I16 code_row_repeat(const RowStrip& s, const RowPlace& p, const R
   }
   const Four repeated = trail_around(trail_of_repeats(s), p);
   const I16 around = add(mul_lo(repeated.w, set(6)), add(repeated.n, repeated.n));
-  const I16 context = add(add(mul_lo(pattern, set(18)), around), min_s(repeated.ne, set(1)));
+  const I16 third = Beside<kFlat>::deep(s) ? load(s.z_repeats + p.values) : repeated.ne;
+  const I16 context = add(add(mul_lo(pattern, set(18)), around), min_s(third, set(1)));
   const I16 symbol = select(is_first, set(0), select(is_second, set(1), set(2)));
   return coder.row_repeat(context, p.active, symbol);
+}
+
+template <bool kFlat>
+GICODEC_INLINE void put_residual(const RowStrip& s, const RowPlace& p, unsigned k, I16 residual) {
+  trail_of(s, k, kResidualTrail).put(p.step, residual);
+  if (Beside<kFlat>::slices(s)) store(s.channel[k].z_residuals + p.values, residual);
 }
 
 /// Half of W's error, which a texel that repeats keeps.
@@ -158,10 +175,11 @@ GICODEC_INLINE void code_row_channel(const RowStrip& s, const RowPlace& p, unsig
     }
   }
   const Four residuals = trail_around(trail_of(s, k, kResidualTrail), p);
+  const LocalContext local = local_context<kFlat>(s, p, k, residuals);
   const RowContext context =
       channel.low
-          ? low_context(residuals, load(trail_of(s, channel.high, kResidualTrail).step(p.step) + 1))
-          : row_context(s, k, residuals, leads);
+          ? low_context(local, load(trail_of(s, channel.high, kResidualTrail).step(p.step) + 1))
+          : row_context(s, k, residuals, local, leads);
 
   const I16 place = channel.nearest == nullptr ? prediction : entries(channel.nearest, prediction);
   std::uint16_t* const current = channel.values + p.values;
@@ -188,7 +206,7 @@ GICODEC_INLINE void code_row_channel(const RowStrip& s, const RowPlace& p, unsig
   residual = keep(coded, residual);
   if constexpr (kDecode) store(current, value);
   trail_of(s, k, kValueTrail).put(p.step, value);
-  trail_of(s, k, kResidualTrail).put(p.step, residual);
+  put_residual<kFlat>(s, p, k, residual);
   if (k == s.lead) leads.first = residual;
   if (k == s.lead + 1) leads.second = residual;
   const auto keep_error = [&](unsigned kind, I16 by) GICODEC_INLINE_LAMBDA {
@@ -210,7 +228,7 @@ GICODEC_INLINE void repeat_row_channel(const RowStrip& s, const RowPlace& p, uns
                                         first_candidate<kFlat>(s, values)));
   if constexpr (kDecode) store(s.channel[k].values + p.values, value);
   trail_of(s, k, kValueTrail).put(p.step, value);
-  trail_of(s, k, kResidualTrail).put(p.step, set(0));
+  put_residual<kFlat>(s, p, k, set(0));
   const auto keep_error = [&](unsigned kind) GICODEC_INLINE_LAMBDA {
     const Trail trail = trail_of(s, k, kind);
     trail.put(p.step, keep(p.here, kept_error(trail, p)));
@@ -253,8 +271,9 @@ template <bool kDecode, bool kFlat, typename Coder>
       }
     }
     const M16 coded = from_bits(open);
-    const I16 source = add(symbol, set(1));  // 1 or 2
-    trail_of_repeats(s).put(p.step, keep(mask_andnot(p.here, coded), source));
+    const I16 source = keep(mask_andnot(p.here, coded), add(symbol, set(1)));  // 1 or 2
+    trail_of_repeats(s).put(p.step, source);
+    if (Beside<kFlat>::slices(s)) store(s.z_repeats + p.values, source);
     // What the row above has two columns ahead, and what this strip's last row leaves.
     const std::size_t ahead = t + kRowDelay, left = t - std::size_t{kRowDelay} * (kLanes - 1);
     for_each_trail<kFlat>(s, [&](const Trail& trail, std::uint16_t* above) {
@@ -269,7 +288,7 @@ template <bool kDecode, bool kFlat, typename Coder>
 
 Step* model_rows(const RowStrip& s, Step* steps) {
   Modeller modeller{steps};
-  if (s.deep || s.update) {
+  if (Beside<false>::slices(s) || s.update) {
     code_rows<false, false>(s, modeller);
   } else {
     code_rows<false, true>(s, modeller);
@@ -278,6 +297,6 @@ Step* model_rows(const RowStrip& s, Step* steps) {
 }
 bool decode_rows(const RowStrip& s, const Tables& tables, Input& in) {
   Reader reader{tables, in};
-  if (s.deep || s.update) return code_rows<true, false>(s, reader);
+  if (Beside<false>::slices(s) || s.update) return code_rows<true, false>(s, reader);
   return code_rows<true, true>(s, reader);
 }
