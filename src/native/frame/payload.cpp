@@ -213,12 +213,13 @@ void encode(const EncodeJob& job, const PayloadSettings& settings, Isa isa, Payl
   }
 }
 
-/// What fast codes by adaptive chunks too: of so little, tables of its own are a large part, and
-/// the time is some milliseconds.
-bool may_adapt_at_once(const EncodeJob& job) {
-  constexpr std::size_t kTiny = 1U << 14;
-  return job.keyframe && takes_raster(job.desc) && job.desc.record.count <= 4 &&
-         job.blocks.size() * block_bytes(job.desc) <= kTiny;
+/// What fast codes by adaptive chunks too, after it took `size` bytes: tables and states are a
+/// large part of so little, and the time is some milliseconds.
+bool may_adapt_at_once(const EncodeJob& job, std::size_t size) {
+  constexpr std::size_t kTiny = 1U << 14, kSmall = 1U << 18, kNothing = 72, kLittle = 1024;
+  if (size <= kNothing || !job.keyframe || !takes_raster(job.desc) || job.desc.record.count > 4)
+    return false;
+  return job.blocks.size() * block_bytes(job.desc) <= (size <= kLittle ? kSmall : kTiny);
 }
 
 }  // namespace
@@ -243,7 +244,7 @@ void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa i
   PayloadSettings other = settings;
   other.chunk.preset = Preset::fast;
   const bool strong = wanted.preset == Preset::strong;
-  if (!strong && may_adapt_at_once(job)) {
+  if (!strong && may_adapt_at_once(job, out.size() - begin)) {
     other.chunk.preset = Preset::strong;
     try_as(other);
     other.chunk.preset = Preset::fast;
