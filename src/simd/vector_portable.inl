@@ -9,7 +9,7 @@ using RegF [[gnu::vector_size(16)]] = float;
 using Reg8 [[gnu::vector_size(16)]] = std::uint8_t;
 using Reg64 [[gnu::vector_size(16)]] = std::uint64_t;
 inline constexpr int kRegs = 4;
-#define GICODEC_STEP GICODEC_INLINE
+#define GICODEC_STEP [[gnu::noinline]]
 
 struct I16 {
   Reg16 v[kRegs];
