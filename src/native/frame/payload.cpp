@@ -216,8 +216,8 @@ void encode(const EncodeJob& job, const PayloadSettings& settings, Isa isa, Payl
 /// What fast codes by adaptive chunks too, after it took `size` bytes: tables and states are a
 /// large part of so little, and the time is some milliseconds.
 bool may_adapt_at_once(const EncodeJob& job, std::size_t size) {
-  constexpr std::size_t kTiny = 1U << 14, kSmall = 1U << 18, kNothing = 72, kLittle = 1024;
-  if (size <= kNothing || !job.keyframe || !takes_raster(job.desc) || job.desc.record.count > 4)
+  constexpr std::size_t kTiny = 1U << 14, kSmall = 1U << 18, kLittle = 1024;
+  if (size <= kTooFew || !job.keyframe || !takes_raster(job.desc) || job.desc.record.count > 4)
     return false;
   return job.blocks.size() * block_bytes(job.desc) <= (size <= kLittle ? kSmall : kTiny);
 }

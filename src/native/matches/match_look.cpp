@@ -149,8 +149,7 @@ class Look {
 }  // namespace
 
 bool may_match(const EncodeJob& job, std::size_t size, bool thorough, LookMemory& memory) {
-  constexpr std::size_t kFew = 72;  // bytes, of which nothing can be saved that matters
-  if (size <= kFew) return false;
+  if (size <= kTooFew) return false;
   const std::size_t records = record_count(job.desc.block) * job.blocks.size();
   const std::uint64_t all = std::uint64_t{records} * job.desc.record.bytes;
   const bool poor = 2 * size >= all;

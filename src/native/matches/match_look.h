@@ -10,6 +10,9 @@
 
 namespace gicodec::native {
 
+/// Bytes of which nothing can be saved that matters.
+inline constexpr std::size_t kTooFew = 72;
+
 /// Kept for its capacity.
 struct LookMemory {
   /// A word of a record, and where it is; a word of 0: none.

@@ -58,6 +58,7 @@ class RowPlanes {
   [[nodiscard]] const Channels& channels() const { return channels_; }
   [[nodiscard]] std::size_t columns() const { return columns_; }
   [[nodiscard]] std::size_t rows() const { return rows_; }
+  [[nodiscard]] bool has_slices() const { return rows_ > rows_of_slice_; }
   [[nodiscard]] std::size_t rows_of_slice() const { return rows_of_slice_; }
   [[nodiscard]] std::size_t texels() const { return columns_ * rows_; }
   /// With kMargin words on either side. There are rows beyond the last, as many as lanes.

@@ -62,7 +62,7 @@ RowStrip prepare_strips(bool update, RowMemory& memory) {
   const Channels& channels = planes.channels();
   const auto coded = planes.coded();
   const std::size_t columns = planes.columns(), above = above_stride(columns);
-  const bool slices = planes.rows() > planes.rows_of_slice();
+  const bool slices = planes.has_slices();
   RowStrip strip{};
   strip.columns = static_cast<unsigned>(columns);
   strip.update = update;
@@ -133,7 +133,7 @@ void move_to(const Kernels& kernels, RowStrip& strip, RowMemory& memory, std::si
   strip.rows = static_cast<unsigned>(std::min<std::size_t>(kLanes, left));
   strip.first = left == slice;
   strip.deep = y >= slice;
-  const bool slices = planes.rows() > slice;
+  const bool slices = planes.has_slices();
   const std::size_t of_slice = y % slice / kLanes * tiled_steps(planes) * kLanes;
   strip.z_repeats = slices ? memory.z_repeats.data() + of_slice : nullptr;
   if (strip.first) {

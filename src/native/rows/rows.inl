@@ -114,6 +114,7 @@ GICODEC_INLINE I16 code_row_repeat(const RowStrip& s, const RowPlace& p, const R
   return coder.row_repeat(context, p.active, symbol);
 }
 
+/// For later texels of the slice, and for the next slice.
 template <bool kFlat>
 GICODEC_INLINE void put_residual(const RowStrip& s, const RowPlace& p, unsigned k, I16 residual) {
   trail_of(s, k, kResidualTrail).put(p.step, residual);
