@@ -168,6 +168,8 @@ class ContainerReader {
   /// First reads the part of a growing file that its index does not list yet. unknown_frame if the
   /// container has no such frame or is not seekable().
   Status seek(std::uint64_t frame);
+  /// The numbers of all frames, ascending, as seek() takes them. unknown_frame unless seekable().
+  [[nodiscard]] Result<std::vector<std::uint64_t>> frames();
 
   ContainerReader(ContainerReader&&) noexcept;
   ContainerReader& operator=(ContainerReader&&) noexcept;

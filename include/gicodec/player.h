@@ -67,6 +67,8 @@ class ContainerPlayer {
   /// or is not seekable().
   Status seek(std::uint64_t frame);
   [[nodiscard]] bool seekable() const noexcept;
+  /// As ContainerReader::frames().
+  [[nodiscard]] Result<std::vector<std::uint64_t>> frames();
   /// As ContainerReader::metadata().
   [[nodiscard]] Result<Metadata> metadata(std::uint8_t texture);
   /// True once the player has found the container's end mark.

@@ -1,5 +1,7 @@
-// Buffers from the program's allocator, see set_memory().
+// Buffers from the program's allocator, see set_memory(), or from that of the running call.
 #pragma once
+
+#include <gicodec/memory.h>
 
 #include <cstddef>
 #include <limits>
@@ -11,6 +13,22 @@ namespace gicodec {
 /// Returns null if the allocation fails.
 [[nodiscard]] void* take_memory(std::size_t bytes, std::size_t alignment) noexcept;
 void give_back(void* memory, std::size_t alignment) noexcept;
+
+/// The allocator of the calls that run on this thread; null: the program's.
+[[nodiscard]] const MemoryHook* memory_of_call() noexcept;
+
+/// Sets it until the end of the scope. A buffer must be given back under the hook that it was taken
+/// under.
+class MemoryScope {
+ public:
+  explicit MemoryScope(const MemoryHook* hook) noexcept;
+  ~MemoryScope();
+  MemoryScope(const MemoryScope&) = delete;
+  MemoryScope& operator=(const MemoryScope&) = delete;
+
+ private:
+  const MemoryHook* before_;
+};
 
 template <typename T>
 struct Allocator {

@@ -2,9 +2,9 @@
 // runs it on the caller's.
 #pragma once
 
-#include <cstddef>
-
 #include <gicodec/threads.h>
+
+#include "base/memory.h"
 
 #include <algorithm>
 #include <atomic>
@@ -46,12 +46,14 @@ void for_each_item(const Threads& threads, std::size_t items, Body&& body) {
   struct Items {
     Body& body;
     std::size_t count;
+    const MemoryHook* memory = memory_of_call();
     std::atomic<std::size_t> next{0};
     std::atomic<bool> failed{false};
     std::exception_ptr error{};
 
     static void take(void* self, unsigned thread) noexcept {
       Items& all = *static_cast<Items*>(self);
+      const MemoryScope scope(all.memory);
       try {
         for (std::size_t item = all.next++; item < all.count; item = all.next++) {
           all.body(thread, item);

@@ -241,6 +241,19 @@ Status ContainerReader::seek(std::uint64_t frame) {
   return guarded([&] { return state_->seek(frame); });
 }
 
+Result<std::vector<std::uint64_t>> ContainerReader::frames() {
+  return guarded([&]() -> Result<std::vector<std::uint64_t>> {
+    if (!state_->seekable) return Status::unknown_frame;
+    const Status status = state_->index.extend(state_->reader);
+    if (status != Status::ok) return status;
+    std::vector<std::uint64_t> frames;
+    for (const SeekEntry& packet : state_->index.packets()) {
+      if (frames.empty() || frames.back() != packet.frame) frames.push_back(packet.frame);
+    }
+    return frames;
+  });
+}
+
 Status ContainerReader::select(std::span<const TextureRegion> wanted) {
   return guarded([&]() -> Status {
     const auto rules = state_->reader.rules();

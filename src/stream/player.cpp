@@ -71,6 +71,8 @@ std::span<const ContainerPacket> ContainerPlayer::packets() const noexcept {
   return std::span(state_->packets).first(state_->packet_count);
 }
 
+Result<std::vector<std::uint64_t>> ContainerPlayer::frames() { return state_->reader.frames(); }
+
 Result<Metadata> ContainerPlayer::metadata(std::uint8_t texture) {
   return state_->reader.metadata(texture);
 }

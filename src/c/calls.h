@@ -1,0 +1,173 @@
+// What every call of the C interface does: takes the caller's structs, keeps exceptions inside,
+// fills the caller's memory.
+#pragma once
+
+#include "base/guard.h"
+#include "base/memory.h"
+#include "c/host.h"
+
+#include <gicodec/c/base.h>
+#include <gicodec/packet.h>
+#include <gicodec/status.h>
+#include <gicodec/texture.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace gicodec {
+class Backend;
+}
+
+/// A backend as C sees it.
+struct gicodec_backend {
+  const gicodec::Backend* backend = nullptr;
+};
+
+namespace gicodec::c {
+
+/// No struct is longer; more is a size that was never set.
+inline constexpr std::size_t kMaxStruct = 4096;
+
+/// Copies a caller's struct; null gives zeros. invalid_argument for a size that no version had;
+/// unsupported_feature if a longer struct says what this library does not know.
+template <typename Struct>
+[[nodiscard]] Status take(const Struct* given, Struct& out) noexcept {
+  out = {};
+  if (given == nullptr) return Status::ok;
+  const std::size_t size = given->struct_size;
+  if (size < sizeof(Struct) || size > kMaxStruct) return Status::invalid_argument;
+  const auto* const bytes = reinterpret_cast<const unsigned char*>(given);
+  if (std::any_of(bytes + sizeof(Struct), bytes + size, [](auto byte) { return byte != 0; })) {
+    return Status::unsupported_feature;
+  }
+  std::memcpy(&out, given, sizeof(Struct));
+  return Status::ok;
+}
+
+/// Fills a caller's struct, but for its size. invalid_argument as above, and for null.
+template <typename Struct>
+[[nodiscard]] Status give(const Struct& value, Struct* out) noexcept {
+  if (out == nullptr) return Status::invalid_argument;
+  const std::uint32_t size = out->struct_size;
+  if (size < sizeof(Struct) || size > kMaxStruct) return Status::invalid_argument;
+  *out = value;
+  out->struct_size = size;
+  return Status::ok;
+}
+
+[[nodiscard]] constexpr gicodec_status number(Status status) noexcept {
+  return static_cast<gicodec_status>(status);
+}
+
+/// What a caller's function returned; io_failed for a number that is no error of this library's.
+[[nodiscard]] Status status_of_caller(gicodec_status status) noexcept;
+
+/// Runs `body`, which returns a Status, and keeps exceptions inside.
+template <typename Body>
+[[nodiscard]] gicodec_status call(Body&& body) noexcept {
+  return number(guarded(std::forward<Body>(body)));
+}
+
+/// A handle that works with memory and threads of its host.
+struct Handle {
+  Host host;
+  std::atomic<bool> cancelled{false};
+};
+
+/// The same for a call of a handle; invalid_argument if that is null.
+template <typename Any, typename Body>
+[[nodiscard]] gicodec_status call(Any* handle, Body&& body) noexcept {
+  if (handle == nullptr) return GICODEC_INVALID_ARGUMENT;
+  const MemoryScope scope(handle->host.memory());
+  return call(std::forward<Body>(body));
+}
+
+/// Stores a new handle once fill(handle) is ok.
+template <typename Any, typename Fill>
+[[nodiscard]] gicodec_status create(const gicodec_host* host, Any** out, Fill&& fill) noexcept {
+  if (out == nullptr) return GICODEC_INVALID_ARGUMENT;
+  *out = nullptr;
+  return call([&]() -> Status {
+    auto handle = std::make_unique<Any>();
+    if (const Status status = handle->host.set(host); status != Status::ok) return status;
+    const MemoryScope scope(handle->host.memory());
+    const Status status = fill(*handle);
+    if (status == Status::ok) *out = handle.release();
+    handle.reset();  // within the scope
+    return status;
+  });
+}
+
+template <typename Any>
+void destroy(Any* handle) noexcept {
+  if (handle == nullptr) return;
+  const MemoryScope scope(handle->host.memory());
+  delete handle;
+}
+
+/// A caller's array. Null is empty, whatever the count.
+template <typename T>
+[[nodiscard]] std::span<const T> list(const T* items, std::size_t count) noexcept {
+  return items == nullptr ? std::span<const T>() : std::span<const T>(items, count);
+}
+[[nodiscard]] inline std::span<const std::byte> bytes(const void* memory,
+                                                      std::size_t size) noexcept {
+  return list(static_cast<const std::byte*>(memory), size);
+}
+[[nodiscard]] inline std::string_view text(const char* given,
+                                           std::string_view usual = {}) noexcept {
+  return given == nullptr ? usual : std::string_view(given);
+}
+/// True if an array has entries but no memory.
+template <typename T>
+[[nodiscard]] bool is_missing(const T* items, std::size_t count) noexcept {
+  return items == nullptr && count != 0;
+}
+
+/// Copies to the caller's memory and stores the size. buffer_too_small.
+[[nodiscard]] inline Status copy_out(std::span<const std::byte> from, void* out,
+                                     std::size_t capacity, std::size_t* size) noexcept {
+  if (size == nullptr || is_missing(out, capacity)) return Status::invalid_argument;
+  *size = from.size();
+  if (from.size() > capacity) return Status::buffer_too_small;
+  if (!from.empty()) std::memcpy(out, from.data(), from.size());
+  return Status::ok;
+}
+/// The same with a zero behind it.
+[[nodiscard]] inline Status copy_text(std::string_view from, char* out, std::size_t capacity,
+                                      std::size_t* size) noexcept {
+  if (size == nullptr || is_missing(out, capacity)) return Status::invalid_argument;
+  *size = from.size() + 1;
+  if (*size > capacity) return Status::buffer_too_small;
+  std::memcpy(out, from.data(), from.size());
+  out[from.size()] = 0;
+  return Status::ok;
+}
+
+/// A span as the interface returns it.
+template <typename T>
+[[nodiscard]] const T* point(std::span<const T> items, std::size_t* count) noexcept {
+  if (count != nullptr) *count = items.size();
+  return items.data();
+}
+[[nodiscard]] inline const std::uint8_t* point(std::span<const std::byte> memory,
+                                               std::size_t* size) noexcept {
+  if (size != nullptr) *size = memory.size();
+  return reinterpret_cast<const std::uint8_t*>(memory.data());
+}
+
+/// Views, limits and backends as the C++ interface takes them.
+[[nodiscard]] Status take_view(const gicodec_view* given, TextureView& out) noexcept;
+[[nodiscard]] Status take_view(const gicodec_const_view* given, ConstTextureView& out) noexcept;
+[[nodiscard]] Status take_limits(const gicodec_limits* given, DecodeLimits& out) noexcept;
+[[nodiscard]] Status take_backends(const gicodec_backend* const* given, std::size_t count,
+                                   std::vector<const Backend*>& out);
+
+}  // namespace gicodec::c

@@ -1,0 +1,195 @@
+// Plays containers from the caller's source, or from memory.
+#include "c/container.h"
+#include "c/volume_desc.h"
+
+#include <gicodec/player.h>
+
+#include <optional>
+#include <utility>
+
+using namespace gicodec;
+
+namespace gicodec::c {
+namespace {
+
+/// The caller's source.
+class PlayerSource final : public Source {
+ public:
+  Status set(const gicodec_source* given) {
+    if (given == nullptr) return Status::invalid_argument;
+    const Status status = take(given, given_);
+    if (status != Status::ok) return status;
+    const bool whole =
+        given_.read != nullptr && (given_.seek == nullptr) == (given_.size == nullptr);
+    return whole ? Status::ok : Status::invalid_argument;
+  }
+  Result<std::size_t> read(std::span<std::byte> into) override {
+    std::size_t got = 0;
+    const gicodec_status status = given_.read(given_.self, into.data(), into.size(), &got);
+    if (status != GICODEC_OK) return status_of_caller(status);
+    if (got > into.size()) return Status::io_failed;
+    return got;
+  }
+  std::optional<std::uint64_t> size() const override {
+    if (given_.size == nullptr) return std::nullopt;
+    return given_.size(given_.self);
+  }
+  Status seek(std::uint64_t offset) override {
+    return given_.seek == nullptr ? Status::io_failed
+                                  : status_of_caller(given_.seek(given_.self, offset));
+  }
+
+ private:
+  gicodec_source given_{};
+};
+
+}  // namespace
+}  // namespace gicodec::c
+
+struct gicodec_player : c::Handle {
+  c::PlayerSource caller;
+  std::optional<MemorySource> memory;
+  std::optional<ContainerPlayer> player;
+  gicodec_container container;
+  std::vector<uint64_t> frames;
+};
+
+namespace gicodec::c {
+namespace {
+
+/// Opens a player on the source that choose() gives.
+template <typename Choose>
+[[nodiscard]] gicodec_status open(const gicodec_player_options* options, gicodec_player** out,
+                                  Choose&& choose) {
+  gicodec_player_options given;
+  if (const Status status = take(options, given); status != Status::ok) return number(status);
+  return create(given.host, out, [&](gicodec_player& handle) -> Status {
+    PlayerOptions settings;
+    settings.threads = handle.host.threads();
+    settings.isa = handle.host.isa();
+    Status status = take_limits(given.limits, settings.limits);
+    if (status == Status::ok) {
+      status = take_backends(given.backends, given.backend_count, settings.backends);
+    }
+    Source* source = nullptr;
+    if (status == Status::ok) status = choose(handle, source);
+    if (status != Status::ok) return status;
+    auto player = ContainerPlayer::open(*source, settings);
+    if (!player) return player.status();
+    handle.container.description = player->description();
+    handle.player.emplace(*std::move(player));
+    return Status::ok;
+  });
+}
+
+}  // namespace
+}  // namespace gicodec::c
+
+extern "C" {
+
+gicodec_status gicodec_player_open(const gicodec_source* source,
+                                   const gicodec_player_options* options, gicodec_player** out) {
+  return c::open(options, out, [&](gicodec_player& handle, Source*& chosen) {
+    chosen = &handle.caller;
+    return handle.caller.set(source);
+  });
+}
+
+gicodec_status gicodec_player_open_memory(const void* bytes, size_t size,
+                                          const gicodec_player_options* options,
+                                          gicodec_player** out) {
+  return c::open(options, out, [&](gicodec_player& handle, Source*& chosen) {
+    if (c::is_missing(bytes, size)) return Status::invalid_argument;
+    chosen = &handle.memory.emplace(c::bytes(bytes, size));
+    return Status::ok;
+  });
+}
+
+void gicodec_player_destroy(gicodec_player* player) { c::destroy(player); }
+
+const gicodec_container* gicodec_player_container(const gicodec_player* player) {
+  return player == nullptr ? nullptr : &player->container;
+}
+
+gicodec_status gicodec_player_select(gicodec_player* player, const uint32_t* textures,
+                                     size_t count) {
+  return c::call(player, [&]() -> Status {
+    if (c::is_missing(textures, count)) return Status::invalid_argument;
+    std::vector<uint8_t> ids;
+    for (const uint32_t texture : c::list(textures, count)) {
+      if (texture > UINT8_MAX) return Status::unknown_texture;
+      ids.push_back(static_cast<uint8_t>(texture));
+    }
+    return player->player->select(ids);
+  });
+}
+
+gicodec_status gicodec_player_set_layout(gicodec_player* player, uint32_t texture,
+                                         const gicodec_texture_desc* desc) {
+  return c::call(player, [&]() -> Status {
+    if (texture > UINT8_MAX) return Status::unknown_texture;
+    TextureDesc taken;
+    Status status = c::take_desc(desc, taken);
+    if (status == Status::ok) {
+      status = player->player->set_layout(static_cast<uint8_t>(texture), taken.layout);
+    }
+    if (status == Status::ok) player->container.description = player->player->description();
+    return status;
+  });
+}
+
+gicodec_status gicodec_player_next(gicodec_player* player) {
+  return c::call(player, [&] { return player->player->next(); });
+}
+
+gicodec_status gicodec_player_seek(gicodec_player* player, uint64_t frame) {
+  return c::call(player, [&] { return player->player->seek(frame); });
+}
+
+uint64_t gicodec_player_frame(const gicodec_player* player) {
+  return player == nullptr ? 0 : player->player->frame();
+}
+
+gicodec_status gicodec_player_frames(gicodec_player* player, const uint64_t** frames,
+                                     size_t* count) {
+  return c::call(player, [&]() -> Status {
+    if (frames == nullptr || count == nullptr) return Status::invalid_argument;
+    auto found = player->player->frames();
+    if (!found) return found.status();
+    player->frames = *std::move(found);
+    *frames = c::point(std::span<const uint64_t>(player->frames), count);
+    return Status::ok;
+  });
+}
+
+gicodec_status gicodec_player_read(const gicodec_player* player, uint32_t texture,
+                                   const gicodec_view* view) {
+  return c::call(player, [&] {
+    TextureView texels;
+    const Status status = c::take_view(view, texels);
+    if (status != Status::ok) return status;
+    if (texture > UINT8_MAX) return Status::unknown_texture;
+    return player->player->read(static_cast<uint8_t>(texture), texels);
+  });
+}
+
+gicodec_status gicodec_player_read_changed(const gicodec_player* player, uint32_t texture,
+                                           const gicodec_view* view) {
+  return c::call(player, [&] {
+    TextureView texels;
+    const Status status = c::take_view(view, texels);
+    if (status != Status::ok) return status;
+    if (texture > UINT8_MAX) return Status::unknown_texture;
+    return player->player->read_changed(static_cast<uint8_t>(texture), texels);
+  });
+}
+
+const uint32_t* gicodec_player_changed(const gicodec_player* player, uint32_t texture,
+                                       size_t* count) {
+  const bool there = player != nullptr && texture <= UINT8_MAX;
+  return c::point(
+      there ? player->player->changed(static_cast<uint8_t>(texture)) : std::span<const uint32_t>(),
+      count);
+}
+
+}  // extern "C"
