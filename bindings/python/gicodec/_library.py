@@ -1,0 +1,164 @@
+"""The shared library beside this file, its calls, and their errors."""
+
+from __future__ import annotations
+
+import ctypes
+import pathlib
+
+from . import _interface as c
+
+_NAMES = ("libgicodec.so", "libgicodec.dylib", "gicodec.dll")
+
+
+class Error(Exception):
+    """A call of the library failed.
+
+    ``status`` is the number of <gicodec/status.h>, ``name`` its name, e.g. "checksum_mismatch".
+    """
+
+    def __init__(self, status: int, doing: str = ""):
+        text = library.status_text(status).decode()
+        super().__init__(f"{doing}: {text}" if doing else text)
+        self.status = status
+        self.name = c.STATUS_NAMES.get(status, "unknown")
+
+
+class ArgumentError(Error, ValueError):
+    """An argument was wrong (1xx)."""
+
+
+class ResourceError(Error, MemoryError):
+    """Memory or a limit is exhausted, or the call was cancelled (2xx)."""
+
+
+class FormatError(Error, ValueError):
+    """The bytes are damaged, cut off, or not of this format (3xx)."""
+
+
+class MismatchError(Error, ValueError):
+    """The bytes are sound but belong elsewhere (4xx)."""
+
+
+class BackendError(Error, RuntimeError):
+    """A codec, a source or a sink failed (5xx)."""
+
+
+_CLASSES = {1: ArgumentError, 2: ResourceError, 3: FormatError, 4: MismatchError, 5: BackendError}
+
+
+def error_of(status: int, doing: str = "") -> Error:
+    """The exception for a status."""
+    return _CLASSES.get(status // 100, Error)(status, doing)
+
+
+def _load() -> ctypes.CDLL:
+    folder = pathlib.Path(__file__).resolve().parent
+    for name in _NAMES:
+        if (folder / name).exists():
+            return ctypes.CDLL(str(folder / name))
+    raise ImportError(f"there is no {_NAMES[0]} in {folder}: install the package by pip, which "
+                      "builds or brings it")
+
+
+class _Library:
+    """Calls by their names without "gicodec_". A call whose status is not OK raises an Error.
+
+    ctypes lets other threads run during a call.
+    """
+
+    def __init__(self) -> None:
+        self._dll = _load()
+
+    def __getattr__(self, name: str):
+        result, parameters = c.CALLS["gicodec_" + name]
+        function = getattr(self._dll, "gicodec_" + name)
+        function.restype, function.argtypes = result, parameters
+        call = function
+        if "gicodec_" + name in c.FALLIBLE:
+
+            def call(*arguments):
+                status = function(*arguments)
+                if status != c.OK:
+                    raise error_of(status)
+
+        setattr(self, name, call)
+        return call
+
+    def status_of(self, name: str, *arguments) -> int:
+        """The status of a call, also where it is no success."""
+        result, parameters = c.CALLS["gicodec_" + name]
+        function = getattr(self._dll, "gicodec_" + name)
+        function.restype, function.argtypes = result, parameters
+        return function(*arguments)
+
+
+library = _Library()
+
+
+def sized(kind: type, **fields):
+    """A struct of its own size."""
+    return kind(struct_size=ctypes.sizeof(kind), **fields)
+
+
+# For arguments: it keeps alive what it refers to.
+byref = ctypes.byref
+
+
+def address(thing) -> int:
+    """For a field of a struct: of a ctypes object that the caller keeps alive."""
+    return ctypes.addressof(thing)
+
+
+class Handle:
+    """Owns a handle of the library and destroys it once."""
+
+    _destroy = ""  # name of the call
+
+    def __init__(self, create: str, *arguments) -> None:
+        self._handle = None
+        handle = ctypes.c_void_p()
+        getattr(library, create)(*arguments, byref(handle))
+        self._handle = handle.value
+
+    def close(self) -> None:
+        """Frees what the library holds. Calls on a closed object are ArgumentErrors."""
+        handle, self._handle = self._handle, None
+        if handle:
+            getattr(library, self._destroy)(handle)
+
+    def __del__(self) -> None:
+        if getattr(self, "_handle", None):
+            self.close()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_) -> None:
+        self.close()
+
+
+def text_of(call: str, handle) -> str:
+    """What a call writes into the caller's memory as text."""
+    size = ctypes.c_size_t()
+    status = library.status_of(call, handle, None, 0, byref(size))
+    if status != c.BUFFER_TOO_SMALL:
+        raise error_of(status)
+    buffer = ctypes.create_string_buffer(size.value)
+    getattr(library, call)(handle, byref(buffer), size.value, byref(size))
+    return buffer.value.decode()
+
+
+class Host:
+    """Threads and an instruction set for a handle; must live as long as the create() call."""
+
+    def __init__(self, threads: int = 1, isa: str | None = None) -> None:
+        self.struct = sized(c.gicodec_host, threads=threads, isa=isa.encode() if isa else None)
+
+
+def limits_of(limits: dict | None):
+    """A gicodec_limits of keyword pairs; None for None."""
+    return None if limits is None else sized(c.gicodec_limits, **limits)
+
+
+def decoded(name: bytes | None) -> str | None:
+    return None if name is None else name.decode()

@@ -1,0 +1,115 @@
+"""Plain arrays as bytes, and back."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+
+from . import container
+from .description import VolumeDesc, map_texture
+
+# An array's type as a format of one component; others are kept as unsigned integers of their size.
+_FORMATS = {"float16": "R16_SFLOAT", "float32": "R32_SFLOAT", "uint8": "R8_UINT", "int8": "R8_UINT",
+            "uint16": "R16_UINT", "int16": "R16_UINT", "uint32": "R32_UINT", "int32": "R32_UINT",
+            "bool": "R8_UINT", "float64": "R32G32_UINT", "int64": "R32G32_UINT",
+            "uint64": "R32G32_UINT"}
+_COLOURS = {2: "R{0}G{0}", 3: "R{0}G{0}B{0}", 4: "R{0}G{0}B{0}A{0}"}
+_PRESETS = ("turbo", "fast", "strong")
+
+
+def _format_of(array: np.ndarray) -> tuple[str, bool]:
+    """A format, and whether the last axis holds its components."""
+    name = _FORMATS.get(array.dtype.name)
+    if name is None:
+        raise TypeError(f"arrays of {array.dtype} cannot be encoded: {', '.join(_FORMATS)} can")
+    bits, kind = name[1:].split("_")[0], name.split("_")[1]
+    if array.ndim >= 3 and array.shape[-1] in _COLOURS and "G" not in name:
+        return _COLOURS[array.shape[-1]].format(bits) + "_" + kind, True
+    return name, False
+
+
+def _preset(level: int | str | None) -> str:
+    """0 and 1: turbo; 2 to 5, or None: fast; from 6 on: strong."""
+    if level is None or isinstance(level, str):
+        return level or "fast"
+    return _PRESETS[0 if level < 2 else 1 if level < 6 else 2]
+
+
+def _sides(shape: tuple[int, ...]) -> tuple[int, int, int]:
+    """Width, height, depth: axes before the last two are joined."""
+    rows = (1, 1, *shape)
+    depth = 1
+    for side in rows[:-2]:
+        depth *= side
+    return rows[-1], rows[-2], depth
+
+
+def encode(data, level: int | str | None = None, *, max_error: float = 0, threads: int = 1,
+           out=None) -> bytes:
+    """Any array of numbers as the bytes of a container.
+
+    ``level``: "turbo", "fast", "strong", or 0 to 9. ``max_error``: 0 is lossless; below 1 relative
+    to each float, from 1 on in codes or representable values. ``out``: a writeable buffer for the
+    result, of which the used part is returned.
+    """
+    array = np.asarray(data)
+    if array.dtype.byteorder == ">":
+        array = array.astype(array.dtype.newbyteorder("<"))
+    format, coloured = _format_of(array)
+    if max_error and array.dtype.name not in ("float16", "float32", "uint8", "uint16", "uint32"):
+        raise ValueError(f"max_error is for floats and unsigned integers, not for {array.dtype}")
+    about = {"array": json.dumps({"dtype": array.dtype.newbyteorder("=").name,
+                                  "shape": list(array.shape)})}
+    writer_volumes: dict[str, VolumeDesc] = {}
+    sides = _sides(array.shape[:-1] if coloured else array.shape)
+    if array.size:
+        block = (32, 32, 1) if sides[2] == 1 else (16, 16, 16)
+        block = tuple(min(side, most) for side, most in zip(sides, block))
+        writer_volumes["array"] = VolumeDesc("textures", {"array": map_texture(sides, format, block)})
+    else:
+        writer_volumes["array"] = VolumeDesc(
+            "textures", {"array": map_texture((1, 1, 1), format, (1, 1, 1))})
+    writer = container.Writer(None, writer_volumes, metadata=about, preset=_preset(level),
+                              max_error=max_error, threads=threads, gop=0)
+    with writer:
+        if array.size:
+            writer.add(0, {"array": array}, blocks="all")
+    coded = writer.getvalue()
+    if out is None:
+        return coded
+    target = memoryview(out).cast("B")
+    if target.readonly or target.nbytes < len(coded):
+        raise ValueError(f"out must be writeable and have {len(coded)} bytes")
+    target[:len(coded)] = coded
+    return target[:len(coded)]
+
+
+def decode(data, *, out: np.ndarray | None = None, limits: dict | None = None,
+           threads: int = 1) -> np.ndarray:
+    """The array of encode(); into ``out``, an array of its shape and type, if given."""
+    with container.File(data, threads=threads, limits=limits) as file:
+        about = file.metadata.get("array")
+        if about is None or "array" not in file:
+            raise ValueError("these bytes hold no plain array: open them by gicodec.open()")
+        try:
+            described = json.loads(about)
+            shape, dtype = tuple(described["shape"]), np.dtype(described["dtype"])
+        except (ValueError, KeyError, TypeError) as error:
+            raise ValueError("the description of the array is damaged") from error
+        texture = file["array"]
+        count = 1
+        for side in shape:
+            count *= side
+        if dtype.name not in _FORMATS or min(shape, default=0) < 0 or (
+                count and count * dtype.itemsize != texture.desc.nbytes):
+            raise ValueError("the description of the array does not fit its texture")
+        if out is None:
+            out = np.empty(shape, dtype)
+        elif out.shape != shape or out.dtype != dtype or not out.flags.c_contiguous:
+            raise ValueError(f"out must be a C-contiguous array of shape {shape} and type {dtype}")
+        if count and not file.frames:
+            raise ValueError("the bytes are cut off: the array itself is missing")
+        if count:
+            texture.read(0, out)
+        return out

@@ -1,0 +1,36 @@
+"""A codec for numcodecs and Zarr v2: arrays of numbers, lossless or within a bound.
+
+    numcodecs.registry.get_codec({"id": "gicodec", "level": "strong"})
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numcodecs.abc import Codec
+from numcodecs.compat import ensure_ndarray_like, ndarray_copy
+from numcodecs.registry import register_codec
+
+from . import arrays
+
+
+class Gicodec(Codec):
+    """``level`` and ``max_error`` as in gicodec.encode()."""
+
+    codec_id = "gicodec"
+
+    def __init__(self, level: int | str | None = None, max_error: float = 0) -> None:
+        self.level, self.max_error = level, max_error
+
+    def encode(self, buf) -> bytes:
+        return arrays.encode(np.asarray(ensure_ndarray_like(buf)), self.level,
+                             max_error=self.max_error)
+
+    def decode(self, buf, out=None):
+        array = arrays.decode(np.asarray(ensure_ndarray_like(buf)).view(np.uint8).tobytes())
+        return array if out is None else ndarray_copy(array, out)
+
+    def get_config(self) -> dict:
+        return {"id": self.codec_id, "level": self.level, "max_error": self.max_error}
+
+
+register_codec(Gicodec)

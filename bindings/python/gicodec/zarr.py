@@ -1,0 +1,52 @@
+"""A codec for Zarr v3: turns chunks of numbers into bytes, lossless or within a bound.
+
+    zarr.create_array(store, shape=…, chunks=…, dtype="float16",
+                      serializer=gicodec.zarr.GicodecCodec(), compressors=None)
+"""
+
+from __future__ import annotations
+
+import asyncio
+from dataclasses import dataclass
+
+import numpy as np
+from zarr.abc.codec import ArrayBytesCodec
+from zarr.core.common import parse_named_configuration
+from zarr.registry import register_codec
+
+from . import arrays
+
+
+@dataclass(frozen=True)
+class GicodecCodec(ArrayBytesCodec):
+    """``level`` and ``max_error`` as in gicodec.encode()."""
+
+    level: int | str | None = None
+    max_error: float = 0
+    is_fixed_size = False
+
+    @classmethod
+    def from_dict(cls, data):
+        _, configuration = parse_named_configuration(data, "gicodec", require_configuration=False)
+        return cls(**(configuration or {}))
+
+    def to_dict(self) -> dict:
+        return {"name": "gicodec",
+                "configuration": {"level": self.level, "max_error": self.max_error}}
+
+    async def _encode_single(self, chunk_array, chunk_spec):
+        array = np.ascontiguousarray(chunk_array.as_numpy_array())
+        coded = await asyncio.to_thread(arrays.encode, array, self.level, max_error=self.max_error)
+        return chunk_spec.prototype.buffer.from_bytes(coded)
+
+    async def _decode_single(self, chunk_bytes, chunk_spec):
+        array = await asyncio.to_thread(arrays.decode, chunk_bytes.to_bytes())
+        if array.size != int(np.prod(chunk_spec.shape)):
+            raise ValueError(f"the chunk holds an array of shape {array.shape}, not {chunk_spec.shape}")
+        return chunk_spec.prototype.nd_buffer.from_ndarray_like(array.reshape(chunk_spec.shape))
+
+    def compute_encoded_size(self, input_byte_length: int, chunk_spec) -> int:
+        raise NotImplementedError
+
+
+register_codec("gicodec", GicodecCodec)

@@ -1,0 +1,1 @@
+../../include/gicodec/version.h
