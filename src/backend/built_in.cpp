@@ -9,10 +9,15 @@ namespace gicodec {
 namespace {
 
 constinit const ByteBackend kRaw(kBackendRaw, Compression::none);
+#ifdef GICODEC_DECODE_ONLY
+constinit const NativeBackend kNative;
+constexpr std::array<const Backend*, 2> kBuiltIn{&kRaw, &kNative};
+#else
 constinit const ByteBackend kLz4(kBackendLz4, Compression::lz4);
 constinit const ByteBackend kZstd(kBackendZstd, Compression::zstd);
 constinit const NativeBackend kNative;
 constexpr std::array<const Backend*, 4> kBuiltIn{&kRaw, &kLz4, &kZstd, &kNative};
+#endif
 
 constexpr std::array<std::string_view, 5> kNames{"raw", "lz4", "zstd", "hevc", "native"};
 

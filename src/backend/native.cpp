@@ -10,6 +10,7 @@
 namespace gicodec {
 namespace {
 
+#ifndef GICODEC_DECODE_ONLY
 constexpr std::uint64_t kMaxInput = std::uint64_t{1} << 30;  // as the byte backends
 
 std::optional<native::Preset> find_preset(std::string_view name) noexcept {
@@ -50,6 +51,8 @@ class NativeEncoder final : public BackendEncoder {
   native::PayloadMemory memory_;
 };
 
+#endif
+
 class NativeDecoder final : public BackendDecoder {
  public:
   [[nodiscard]] Status check(const TextureDesc& desc, std::size_t blocks,
@@ -67,6 +70,12 @@ class NativeDecoder final : public BackendDecoder {
 
 }  // namespace
 
+#ifdef GICODEC_DECODE_ONLY
+Result<std::unique_ptr<BackendEncoder>> NativeBackend::make_encoder(const TextureDesc&,
+                                                                    const BackendSettings&) const {
+  return Status::unsupported_backend;
+}
+#else
 Result<std::unique_ptr<BackendEncoder>> NativeBackend::make_encoder(
     const TextureDesc& desc, const BackendSettings& settings) const {
   return guarded([&]() -> Result<std::unique_ptr<BackendEncoder>> {
@@ -82,6 +91,7 @@ Result<std::unique_ptr<BackendEncoder>> NativeBackend::make_encoder(
         std::make_unique<NativeEncoder>(desc, settings, *preset));
   });
 }
+#endif
 
 Result<std::unique_ptr<BackendDecoder>> NativeBackend::make_decoder(const TextureDesc& desc) const {
   return guarded([&]() -> Result<std::unique_ptr<BackendDecoder>> {

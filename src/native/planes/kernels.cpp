@@ -31,10 +31,23 @@ namespace {
 #include "native/planes/layout.inl"
 #include "native/planes/texels.inl"
 
+#ifdef GICODEC_DECODE_ONLY
+constexpr Kernels kKernels{.unpack = unpack,
+                           .pack = pack,
+                           .to_steps = to_steps,
+                           .from_steps = from_steps,
+                           .to_lanes = to_lanes,
+                           .from_lanes = from_lanes,
+                           .decode_planes = decode_planes,
+                           .decode_pairs = decode_pairs,
+                           .decode_rows = decode_rows,
+                           .decode_values = decode_values};
+#else
 constexpr Kernels kKernels{unpack,       pack,       to_steps,     from_steps,    has_steps,
                            to_lanes,     from_lanes, model_planes, model_pairs,   decode_planes,
                            decode_pairs, model_rows, decode_rows,  decode_values, encode_steps,
                            price_steps,  cost};
+#endif
 
 }  // namespace
 }  // namespace gicodec::native::GICODEC_ISA

@@ -17,7 +17,11 @@ namespace {
 #include "native/tokens/read_tokens.inl"
 #include "native/tokens/write_tokens.inl"
 
+#ifdef GICODEC_DECODE_ONLY
+constexpr TokenKernels kKernels{nullptr, read_tokens};
+#else
 constexpr TokenKernels kKernels{write_tokens, read_tokens};
+#endif
 
 }  // namespace
 }  // namespace gicodec::native::GICODEC_ISA
