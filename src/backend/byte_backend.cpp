@@ -1,5 +1,6 @@
 #include "backend/byte_backend.h"
 
+#include "base/parts.h"
 #include "texture/presence.h"
 #include "transform/byte_planes.h"
 
@@ -185,6 +186,7 @@ class ByteDecoder final : public BackendDecoder {
 
 Result<std::unique_ptr<BackendEncoder>> ByteBackend::make_encoder(
     const TextureDesc& desc, const BackendSettings& settings) const {
+  if constexpr (!kEncodes) return Status::unsupported_backend;
   if (!settings.preset.empty() || settings.chunk != 0 || !is_supported(settings.isa)) {
     return Status::invalid_settings;
   }

@@ -2,6 +2,7 @@
 
 #include "base/guard.h"
 #include "base/parallel.h"
+#include "base/parts.h"
 #include "native/frame/payload.h"
 
 #include <optional>
@@ -10,7 +11,6 @@
 namespace gicodec {
 namespace {
 
-#ifndef GICODEC_DECODE_ONLY
 constexpr std::uint64_t kMaxInput = std::uint64_t{1} << 30;  // as the byte backends
 
 std::optional<native::Preset> find_preset(std::string_view name) noexcept {
@@ -51,8 +51,6 @@ class NativeEncoder final : public BackendEncoder {
   native::PayloadMemory memory_;
 };
 
-#endif
-
 class NativeDecoder final : public BackendDecoder {
  public:
   [[nodiscard]] Status check(const TextureDesc& desc, std::size_t blocks,
@@ -70,14 +68,9 @@ class NativeDecoder final : public BackendDecoder {
 
 }  // namespace
 
-#ifdef GICODEC_DECODE_ONLY
-Result<std::unique_ptr<BackendEncoder>> NativeBackend::make_encoder(const TextureDesc&,
-                                                                    const BackendSettings&) const {
-  return Status::unsupported_backend;
-}
-#else
 Result<std::unique_ptr<BackendEncoder>> NativeBackend::make_encoder(
     const TextureDesc& desc, const BackendSettings& settings) const {
+  if constexpr (!kEncodes) return Status::unsupported_backend;
   return guarded([&]() -> Result<std::unique_ptr<BackendEncoder>> {
     const Status status = validate(desc);
     if (status != Status::ok) return status;
@@ -91,7 +84,6 @@ Result<std::unique_ptr<BackendEncoder>> NativeBackend::make_encoder(
         std::make_unique<NativeEncoder>(desc, settings, *preset));
   });
 }
-#endif
 
 Result<std::unique_ptr<BackendDecoder>> NativeBackend::make_decoder(const TextureDesc& desc) const {
   return guarded([&]() -> Result<std::unique_ptr<BackendDecoder>> {

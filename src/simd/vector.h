@@ -5,9 +5,17 @@
 
 #include <cstdint>
 
+#ifdef GICODEC_DECODE_ONLY  // Small rather than fast.
+#define GICODEC_INLINE inline
+#define GICODEC_INLINE_LAMBDA
+#define GICODEC_INLINE_STEP [[gnu::noinline]]
+#define GICODEC_NO_UNROLL
+#else
 /// Vector values stay in registers only if every function that handles them is inlined.
 #define GICODEC_INLINE [[gnu::always_inline]] inline
 #define GICODEC_INLINE_LAMBDA __attribute__((always_inline))
+#define GICODEC_INLINE_STEP GICODEC_INLINE
+#endif
 // GICODEC_STEP, which each wrapper defines, is for what a kernel does several times in a texel:
 // inlined too, or out of line where the kernel would outgrow the cache of instructions.
 /// Unrolls loops over arrays of vectors, which would otherwise live in memory. Off where lanes are

@@ -2,7 +2,7 @@
 
 using Reg = __m256i;
 inline constexpr int kRegs = 2;
-#define GICODEC_STEP GICODEC_INLINE
+#define GICODEC_STEP GICODEC_INLINE_STEP
 #define GICODEC_V(op) _mm256_##op
 #define GICODEC_BITS(op) _mm256_##op##_si256
 GICODEC_INLINE Reg load_reg(const void* p) {

@@ -2,7 +2,7 @@
 
 using Reg = __m512i;
 inline constexpr int kRegs = 1;
-#define GICODEC_STEP GICODEC_INLINE
+#define GICODEC_STEP GICODEC_INLINE_STEP
 #define GICODEC_V(op) _mm512_##op
 #define GICODEC_BITS(op) _mm512_##op##_si512
 GICODEC_INLINE Reg load_reg(const void* p) { return _mm512_loadu_si512(p); }

@@ -41,9 +41,10 @@ deliveries() {
 # Many clients in one process.
 crowd() {
   local server
-  server crowd --updates 6 --rate 20 --wait 4 --proofs
+  server crowd --updates $((6 * slower)) --rate 20 --wait 4 --proofs
   server=$last
-  start simulated "$bin/gi-client" --connect 127.0.0.1:$port $scene --simulate 4 --expect-proofs --updates 6
+  start simulated "$bin/gi-client" --connect 127.0.0.1:$port $scene --simulate 4 --expect-proofs \
+    --updates $((6 * slower))
   ends 0 $last simulated
   ends 0 $server crowd
   says simulated "4 of 4 clients"

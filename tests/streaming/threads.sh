@@ -60,14 +60,14 @@ serving() {
   local server ports clients
   start server "$bin/gi-server" --gltf $room --grid 9x5x9 --rays 16 --trace-threads 3 --threads 3 \
     --listen 127.0.0.1:0 --listen-web 127.0.0.1:0 --certificate ../server.pem --key ../server.key \
-    --port-file server.port --fine 4x4x4 --proofs --rate 20 --updates 40 --wait 4 --stats-file stats.jsonl
+    --port-file server.port --fine 4x4x4 --proofs --rate 20 --updates $((40 * slower)) --wait 4 --stats-file stats.jsonl
   server=$last
   ports=($(port_of server))
   relay relay ${ports[0]} --loss 2 --delay 5
   clients=()
   client() {
     local name=client-${#clients[@]}
-    start $name "$bin/gi-client" --updates 8 --expect-proofs "$@"
+    start $name "$bin/gi-client" --updates $((8 * slower)) --expect-proofs "$@"
     clients+=($last)
   }
   client --connect 127.0.0.1:${ports[0]} $scene --frames 3 --threads 3 -o pictures

@@ -50,10 +50,11 @@ both() {
   for where in 127.0.0.1:unicast $name_of_this:shared "[::1]:unicast"; do
     name=client-${#clients[@]}
     start $name "$bin/gi-client" --connect "wss://${where%:*}:${ports[1]}" --ca ../authority.pem $view \
-      --delivery ${where##*:} --updates 12 --expect-proofs
+      --delivery ${where##*:} --updates $((12 * slower)) --expect-proofs
     clients+=($last)
   done
-  start enet "$bin/gi-client" --connect 127.0.0.1:${ports[0]} $view --updates 12 --expect-proofs
+  start enet "$bin/gi-client" --connect 127.0.0.1:${ports[0]} $view --updates $((12 * slower)) \
+    --expect-proofs
   enet=$last
   start crowd "$bin/gi-client" --connect wss://127.0.0.1:${ports[1]} --pin "$(pin_of ../server.pem)" \
     --simulate 5 --gltf $room --updates $((12 * slower)) --expect-proofs

@@ -45,7 +45,7 @@ class _Player(Handle):
         at, count = ctypes.c_void_p(), ctypes.c_size_t()
         status = library.status_of("player_frames", self._handle, byref(at), byref(count))
         if status == c.UNKNOWN_FRAME:
-            raise error_of(status, "the file has no index of its frames: it is damaged")
+            raise error_of(c.CORRUPT, "the index of the frames")
         if status != c.OK:
             raise error_of(status)
         size = count.value * 8

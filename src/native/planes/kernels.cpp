@@ -1,6 +1,7 @@
 // The kernels of one instruction set (simd/dispatch.h).
 #include "native/planes/kernels.h"
 
+#include "base/parts.h"
 #include "simd/intrinsics.h"
 
 #include <bit>
@@ -31,23 +32,23 @@ namespace {
 #include "native/planes/layout.inl"
 #include "native/planes/texels.inl"
 
-#ifdef GICODEC_DECODE_ONLY
 constexpr Kernels kKernels{.unpack = unpack,
                            .pack = pack,
                            .to_steps = to_steps,
                            .from_steps = from_steps,
+                           .has_steps = kEncodes ? has_steps : nullptr,
                            .to_lanes = to_lanes,
                            .from_lanes = from_lanes,
+                           .model_planes = kEncodes ? model_planes : nullptr,
+                           .model_pairs = kEncodes ? model_pairs : nullptr,
                            .decode_planes = decode_planes,
                            .decode_pairs = decode_pairs,
+                           .model_rows = kEncodes ? model_rows : nullptr,
                            .decode_rows = decode_rows,
-                           .decode_values = decode_values};
-#else
-constexpr Kernels kKernels{unpack,       pack,       to_steps,     from_steps,    has_steps,
-                           to_lanes,     from_lanes, model_planes, model_pairs,   decode_planes,
-                           decode_pairs, model_rows, decode_rows,  decode_values, encode_steps,
-                           price_steps,  cost};
-#endif
+                           .decode_values = decode_values,
+                           .encode_steps = kEncodes ? encode_steps : nullptr,
+                           .price_steps = kEncodes ? price_steps : nullptr,
+                           .cost = kEncodes ? cost : nullptr};
 
 }  // namespace
 }  // namespace gicodec::native::GICODEC_ISA

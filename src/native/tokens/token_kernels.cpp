@@ -1,6 +1,7 @@
 // The kernels of one instruction set (simd/dispatch.h).
 #include "native/tokens/token_kernels.h"
 
+#include "base/parts.h"
 #include "simd/intrinsics.h"
 
 #include <bit>
@@ -17,11 +18,7 @@ namespace {
 #include "native/tokens/read_tokens.inl"
 #include "native/tokens/write_tokens.inl"
 
-#ifdef GICODEC_DECODE_ONLY
-constexpr TokenKernels kKernels{nullptr, read_tokens};
-#else
-constexpr TokenKernels kKernels{write_tokens, read_tokens};
-#endif
+constexpr TokenKernels kKernels{kEncodes ? write_tokens : nullptr, read_tokens};
 
 }  // namespace
 }  // namespace gicodec::native::GICODEC_ISA
