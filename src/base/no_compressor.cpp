@@ -1,4 +1,4 @@
-// In place of compressor.cpp in a library that decodes alone: bytes as they are, no LZ4, no Zstandard.
+// In place of compressor.cpp in a library that decodes alone: no LZ4, no Zstandard.
 #include "base/compressor.h"
 
 #include <cstring>
