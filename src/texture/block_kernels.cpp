@@ -2,6 +2,7 @@
 // 8×8 and 16×16 texels of 4 bytes, are copied by rows, all others record by record.
 #include "texture/block_kernels.h"
 
+#include "base/parts.h"
 #include "texture/octahedral_rule.h"
 
 #include <cstring>
@@ -221,7 +222,7 @@ void reconstruct_run(const std::byte* cores, const BlockRun<std::byte>& run) {
   }
 }
 
-constexpr BlockKernels kKernels{strip_run, reconstruct_run};
+constexpr BlockKernels kKernels{kEncodes ? strip_run : nullptr, reconstruct_run};
 
 }  // namespace
 }  // namespace gicodec::GICODEC_ISA

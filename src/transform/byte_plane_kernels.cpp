@@ -1,6 +1,8 @@
 // Records ↔ byte planes, for one instruction set (simd/dispatch.h): loops that compilers vectorise.
 #include "transform/byte_plane_kernels.h"
 
+#include "base/parts.h"
+
 #include <cstdint>
 #include <cstring>
 #include <type_traits>
@@ -250,7 +252,7 @@ void from_planes(const RecordLayout& record, const std::byte* planes, const std:
   });
 }
 
-constexpr BytePlaneKernels kKernels{to_planes, from_planes};
+constexpr BytePlaneKernels kKernels{kEncodes ? to_planes : nullptr, from_planes};
 
 }  // namespace
 }  // namespace gicodec::GICODEC_ISA
