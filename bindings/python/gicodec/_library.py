@@ -96,7 +96,11 @@ library = _Library()
 
 
 def sized(kind: type, **fields):
-    """A struct of its own size."""
+    """A struct of its own size; its fields by name."""
+    known = [name for name, _ in kind._fields_]
+    for name in fields:
+        if name not in known:
+            raise TypeError(f"there is no {name!r}: {', '.join(known[1:])} are")
     return kind(struct_size=ctypes.sizeof(kind), **fields)
 
 

@@ -163,6 +163,8 @@ def test_errors_have_their_status():
     with pytest.raises(gicodec.ResourceError) as caught:
         gicodec.open(writer.getvalue(), limits={"max_texture_bytes": 100})
     assert caught.value.name == "limit_exceeded"
+    with pytest.raises(TypeError, match="max_texture_bytes"):
+        gicodec.open(writer.getvalue(), limits={"max_bytes": 100})
     damaged = bytearray(writer.getvalue())
     damaged[len(damaged) // 2] ^= 1
     with pytest.raises(gicodec.FormatError):
