@@ -62,6 +62,26 @@ template <typename Struct>
   return Status::ok;
 }
 
+/// Copies a caller's array of structs, all of the first one's size.
+template <typename Struct, typename Visit>
+[[nodiscard]] Status take_each(const Struct* given, std::size_t count, Visit&& visit) {
+  const auto* at = reinterpret_cast<const std::byte*>(given);
+  for (std::size_t i = 0; i < count; ++i, at += given->struct_size) {
+    const auto* const one = reinterpret_cast<const Struct*>(at);
+    if (one->struct_size != given->struct_size) return Status::invalid_argument;
+    if (const Status status = visit(one); status != Status::ok) return status;
+  }
+  return Status::ok;
+}
+
+/// Stores a caller's number of something in the library's narrower type; `unknown` if it does not
+/// fit.
+template <typename Number>
+[[nodiscard]] Status narrow(std::uint32_t given, Number& out, Status unknown) noexcept {
+  out = static_cast<Number>(given);
+  return out == given ? Status::ok : unknown;
+}
+
 [[nodiscard]] constexpr gicodec_status number(Status status) noexcept {
   return static_cast<gicodec_status>(status);
 }
@@ -89,16 +109,21 @@ template <typename Any, typename Body>
   return call(std::forward<Body>(body));
 }
 
-/// Stores a new handle once fill(handle) is ok.
-template <typename Any, typename Fill>
-[[nodiscard]] gicodec_status create(const gicodec_host* host, Any** out, Fill&& fill) noexcept {
+/// Takes the caller's options, and stores a new handle of their host once fill(handle, options) is
+/// ok.
+template <typename Options, typename Any, typename Fill>
+[[nodiscard]] gicodec_status create(const Options* options, Any** out, Fill&& fill) noexcept {
   if (out == nullptr) return GICODEC_INVALID_ARGUMENT;
   *out = nullptr;
   return call([&]() -> Status {
+    Options given;
+    Status status = take(options, given);
+    if (status != Status::ok) return status;
     auto handle = std::make_unique<Any>();
-    if (const Status status = handle->host.set(host); status != Status::ok) return status;
+    status = handle->host.set(given.host);
+    if (status != Status::ok) return status;
     const MemoryScope scope(handle->host.memory());
-    const Status status = fill(*handle);
+    status = fill(*handle, given);
     if (status == Status::ok) *out = handle.release();
     handle.reset();  // within the scope
     return status;

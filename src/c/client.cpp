@@ -48,29 +48,26 @@ namespace {
 extern "C" {
 
 gicodec_status gicodec_client_create(const gicodec_client_options* options, gicodec_client** out) {
-  gicodec_client_options given;
-  if (const Status status = c::take(options, given); status != Status::ok) {
-    return c::number(status);
-  }
-  return c::create(given.host, out, [&](gicodec_client& handle) -> Status {
-    if (given.delivery > GICODEC_DELIVERY_SHARED) return Status::invalid_argument;
-    ClientOptions settings;
-    settings.threads = handle.host.threads();
-    settings.isa = handle.host.isa();
-    settings.cancel = &handle.cancelled;
-    settings.delivery = static_cast<Delivery>(given.delivery);
-    settings.budget = {given.budget_blocks, given.budget_bytes};
-    settings.token = c::text(given.token);
-    settings.texels = given.no_texels == 0;
-    Status status = c::take_limits(given.limits, settings.limits);
-    if (status == Status::ok) {
-      status = c::take_backends(given.backends, given.backend_count, settings.backends);
-    }
-    if (status != Status::ok) return status;
-    auto client = Client::create(settings);
-    if (client) handle.client.emplace(*std::move(client));
-    return client.status();
-  });
+  return c::create(
+      options, out, [&](gicodec_client& handle, const gicodec_client_options& given) -> Status {
+        if (given.delivery > GICODEC_DELIVERY_SHARED) return Status::invalid_argument;
+        ClientOptions settings;
+        settings.threads = handle.host.threads();
+        settings.isa = handle.host.isa();
+        settings.cancel = &handle.cancelled;
+        settings.delivery = static_cast<Delivery>(given.delivery);
+        settings.budget = {given.budget_blocks, given.budget_bytes};
+        settings.token = c::text(given.token);
+        settings.texels = given.no_texels == 0;
+        Status status = c::take_limits(given.limits, settings.limits);
+        if (status == Status::ok) {
+          status = c::take_backends(given.backends, given.backend_count, settings.backends);
+        }
+        if (status != Status::ok) return status;
+        auto client = Client::create(settings);
+        if (client) handle.client.emplace(*std::move(client));
+        return client.status();
+      });
 }
 
 void gicodec_client_destroy(gicodec_client* client) { c::destroy(client); }

@@ -44,20 +44,17 @@ extern "C" {
 gicodec_status gicodec_decoder_create(const gicodec_texture_desc* desc,
                                       const gicodec_decoder_options* options,
                                       gicodec_decoder** out) {
-  gicodec_decoder_options given;
-  if (const Status status = c::take(options, given); status != Status::ok) {
-    return c::number(status);
-  }
-  return c::create(given.host, out, [&](gicodec_decoder& handle) -> Status {
-    TextureDesc texture;
-    DecoderOptions settings;
-    Status status = c::take_desc(desc, texture);
-    if (status == Status::ok) status = c::take_options(given, handle, settings);
-    if (status != Status::ok) return status;
-    auto decoder = Decoder::create(texture, settings);
-    if (decoder) handle.decoder.emplace(*std::move(decoder));
-    return decoder.status();
-  });
+  return c::create(options, out,
+                   [&](gicodec_decoder& handle, const gicodec_decoder_options& given) -> Status {
+                     TextureDesc texture;
+                     DecoderOptions settings;
+                     Status status = c::take_desc(desc, texture);
+                     if (status == Status::ok) status = c::take_options(given, handle, settings);
+                     if (status != Status::ok) return status;
+                     auto decoder = Decoder::create(texture, settings);
+                     if (decoder) handle.decoder.emplace(*std::move(decoder));
+                     return decoder.status();
+                   });
 }
 
 void gicodec_decoder_destroy(gicodec_decoder* decoder) { c::destroy(decoder); }
@@ -129,20 +126,18 @@ uint64_t gicodec_decoder_state_hash(const gicodec_decoder* decoder) {
 gicodec_status gicodec_volume_decoder_create(const gicodec_volume_desc* volume,
                                              const gicodec_decoder_options* options,
                                              gicodec_volume_decoder** out) {
-  gicodec_decoder_options given;
-  if (const Status status = c::take(options, given); status != Status::ok) {
-    return c::number(status);
-  }
-  return c::create(given.host, out, [&](gicodec_volume_decoder& handle) -> Status {
-    if (volume == nullptr) return Status::invalid_argument;
-    VolumeDecoderOptions settings;
-    const Status status = c::take_options(given, handle, settings);
-    if (status != Status::ok) return status;
-    settings.first_texture = static_cast<uint8_t>(given.texture_id);
-    auto decoder = VolumeDecoder::create(volume->desc, settings);
-    if (decoder) handle.decoder.emplace(*std::move(decoder));
-    return decoder.status();
-  });
+  return c::create(
+      options, out,
+      [&](gicodec_volume_decoder& handle, const gicodec_decoder_options& given) -> Status {
+        if (volume == nullptr) return Status::invalid_argument;
+        VolumeDecoderOptions settings;
+        const Status status = c::take_options(given, handle, settings);
+        if (status != Status::ok) return status;
+        settings.first_texture = static_cast<uint8_t>(given.texture_id);
+        auto decoder = VolumeDecoder::create(volume->desc, settings);
+        if (decoder) handle.decoder.emplace(*std::move(decoder));
+        return decoder.status();
+      });
 }
 
 void gicodec_volume_decoder_destroy(gicodec_volume_decoder* decoder) { c::destroy(decoder); }

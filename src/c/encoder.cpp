@@ -76,25 +76,22 @@ extern "C" {
 gicodec_status gicodec_encoder_create(const gicodec_texture_desc* desc,
                                       const gicodec_encoder_options* options,
                                       gicodec_encoder** out) {
-  gicodec_encoder_options given;
-  if (const Status status = c::take(options, given); status != Status::ok) {
-    return c::number(status);
-  }
-  return c::create(given.host, out, [&](gicodec_encoder& handle) -> Status {
-    TextureDesc texture;
-    EncoderOptions settings;
-    Status status = c::take_desc(desc, texture);
-    if (status == Status::ok) status = c::take_options(given, settings);
-    if (status != Status::ok) return status;
-    if (given.max_errors != nullptr) return Status::invalid_argument;
-    settings.texture_id = static_cast<uint8_t>(given.texture_id);
-    settings.max_error = given.max_error;
-    settings.settings.threads = handle.host.threads();
-    settings.settings.isa = handle.host.isa();
-    auto encoder = Encoder::create(texture, settings);
-    if (encoder) handle.encoder.emplace(*std::move(encoder));
-    return encoder.status();
-  });
+  return c::create(options, out,
+                   [&](gicodec_encoder& handle, const gicodec_encoder_options& given) -> Status {
+                     TextureDesc texture;
+                     EncoderOptions settings;
+                     Status status = c::take_desc(desc, texture);
+                     if (status == Status::ok) status = c::take_options(given, settings);
+                     if (status != Status::ok) return status;
+                     if (given.max_errors != nullptr) return Status::invalid_argument;
+                     settings.texture_id = static_cast<uint8_t>(given.texture_id);
+                     settings.max_error = given.max_error;
+                     settings.settings.threads = handle.host.threads();
+                     settings.settings.isa = handle.host.isa();
+                     auto encoder = Encoder::create(texture, settings);
+                     if (encoder) handle.encoder.emplace(*std::move(encoder));
+                     return encoder.status();
+                   });
 }
 
 void gicodec_encoder_destroy(gicodec_encoder* encoder) { c::destroy(encoder); }
@@ -176,29 +173,27 @@ uint32_t gicodec_encoder_sequence(const gicodec_encoder* encoder) {
 gicodec_status gicodec_volume_encoder_create(const gicodec_volume_desc* volume,
                                              const gicodec_encoder_options* options,
                                              gicodec_volume_encoder** out) {
-  gicodec_encoder_options given;
-  if (const Status status = c::take(options, given); status != Status::ok) {
-    return c::number(status);
-  }
-  return c::create(given.host, out, [&](gicodec_volume_encoder& handle) -> Status {
-    if (volume == nullptr || c::is_missing(given.max_errors, given.max_error_count)) {
-      return Status::invalid_argument;
-    }
-    VolumeEncoderOptions settings;
-    const Status status = c::take_options(given, settings);
-    if (status != Status::ok) return status;
-    const auto bounds = c::list(given.max_errors, given.max_error_count);
-    settings.max_errors.assign(bounds.begin(), bounds.end());
-    if (bounds.empty() && given.max_error != 0) {
-      settings.max_errors = c::bounds_of(volume->desc, given.max_error);
-    }
-    settings.first_texture = static_cast<uint8_t>(given.texture_id);
-    settings.settings.threads = handle.host.threads();
-    settings.settings.isa = handle.host.isa();
-    auto encoder = VolumeEncoder::create(volume->desc, settings);
-    if (encoder) handle.encoder.emplace(*std::move(encoder));
-    return encoder.status();
-  });
+  return c::create(
+      options, out,
+      [&](gicodec_volume_encoder& handle, const gicodec_encoder_options& given) -> Status {
+        if (volume == nullptr || c::is_missing(given.max_errors, given.max_error_count)) {
+          return Status::invalid_argument;
+        }
+        VolumeEncoderOptions settings;
+        const Status status = c::take_options(given, settings);
+        if (status != Status::ok) return status;
+        const auto bounds = c::list(given.max_errors, given.max_error_count);
+        settings.max_errors.assign(bounds.begin(), bounds.end());
+        if (bounds.empty() && given.max_error != 0) {
+          settings.max_errors = c::bounds_of(volume->desc, given.max_error);
+        }
+        settings.first_texture = static_cast<uint8_t>(given.texture_id);
+        settings.settings.threads = handle.host.threads();
+        settings.settings.isa = handle.host.isa();
+        auto encoder = VolumeEncoder::create(volume->desc, settings);
+        if (encoder) handle.encoder.emplace(*std::move(encoder));
+        return encoder.status();
+      });
 }
 
 void gicodec_volume_encoder_destroy(gicodec_volume_encoder* encoder) { c::destroy(encoder); }
@@ -209,17 +204,13 @@ gicodec_status gicodec_volume_encoder_encode(gicodec_volume_encoder* encoder,
                                              size_t block_count) {
   return c::call(encoder, [&]() -> Status {
     if (views == nullptr || view_count > kMaxVolumeTextures) return Status::invalid_argument;
-    std::vector<ConstTextureView> texels(view_count);
-    const auto* at = reinterpret_cast<const std::byte*>(views);
-    const size_t step = views->struct_size;
-    for (ConstTextureView& one : texels) {
-      const auto* const view = reinterpret_cast<const gicodec_const_view*>(at);
-      if (view->struct_size != step) return Status::invalid_argument;
-      if (const Status status = c::take_view(view, one); status != Status::ok) return status;
-      at += step;
-    }
+    std::vector<ConstTextureView> texels;
+    Status status = c::take_each(views, view_count, [&](const gicodec_const_view* view) {
+      return c::take_view(view, texels.emplace_back());
+    });
+    if (status != Status::ok) return status;
     Selection wanted = Selection::changed();
-    const Status status = c::take_selection(selection, blocks, block_count, wanted);
+    status = c::take_selection(selection, blocks, block_count, wanted);
     if (status != Status::ok) return status;
     auto packets = encoder->encoder->encode(texels, wanted);
     if (packets) encoder->packets = *std::move(packets);

@@ -61,24 +61,36 @@ namespace {
 template <typename Choose>
 [[nodiscard]] gicodec_status open(const gicodec_player_options* options, gicodec_player** out,
                                   Choose&& choose) {
-  gicodec_player_options given;
-  if (const Status status = take(options, given); status != Status::ok) return number(status);
-  return create(given.host, out, [&](gicodec_player& handle) -> Status {
-    PlayerOptions settings;
-    settings.threads = handle.host.threads();
-    settings.isa = handle.host.isa();
-    Status status = take_limits(given.limits, settings.limits);
-    if (status == Status::ok) {
-      status = take_backends(given.backends, given.backend_count, settings.backends);
-    }
-    Source* source = nullptr;
-    if (status == Status::ok) status = choose(handle, source);
-    if (status != Status::ok) return status;
-    auto player = ContainerPlayer::open(*source, settings);
-    if (!player) return player.status();
-    handle.container.description = player->description();
-    handle.player.emplace(*std::move(player));
-    return Status::ok;
+  return create(options, out,
+                [&](gicodec_player& handle, const gicodec_player_options& given) -> Status {
+                  PlayerOptions settings;
+                  settings.threads = handle.host.threads();
+                  settings.isa = handle.host.isa();
+                  Status status = take_limits(given.limits, settings.limits);
+                  if (status == Status::ok) {
+                    status = take_backends(given.backends, given.backend_count, settings.backends);
+                  }
+                  Source* source = nullptr;
+                  if (status == Status::ok) status = choose(handle, source);
+                  if (status != Status::ok) return status;
+                  auto player = ContainerPlayer::open(*source, settings);
+                  if (!player) return player.status();
+                  handle.container.description = player->description();
+                  handle.player.emplace(*std::move(player));
+                  return Status::ok;
+                });
+}
+
+/// Writes a texture by one of the player's calls.
+[[nodiscard]] gicodec_status read(const gicodec_player* player, std::uint32_t texture,
+                                  const gicodec_view* view,
+                                  Status (ContainerPlayer::*by)(std::uint8_t, TextureView) const) {
+  return call(player, [&] {
+    TextureView texels;
+    std::uint8_t id = 0;
+    Status status = take_view(view, texels);
+    if (status == Status::ok) status = narrow(texture, id, Status::unknown_texture);
+    return status == Status::ok ? (*player->player.*by)(id, texels) : status;
   });
 }
 
@@ -164,24 +176,12 @@ gicodec_status gicodec_player_frames(gicodec_player* player, const uint64_t** fr
 
 gicodec_status gicodec_player_read(const gicodec_player* player, uint32_t texture,
                                    const gicodec_view* view) {
-  return c::call(player, [&] {
-    TextureView texels;
-    const Status status = c::take_view(view, texels);
-    if (status != Status::ok) return status;
-    if (texture > UINT8_MAX) return Status::unknown_texture;
-    return player->player->read(static_cast<uint8_t>(texture), texels);
-  });
+  return c::read(player, texture, view, &ContainerPlayer::read);
 }
 
 gicodec_status gicodec_player_read_changed(const gicodec_player* player, uint32_t texture,
                                            const gicodec_view* view) {
-  return c::call(player, [&] {
-    TextureView texels;
-    const Status status = c::take_view(view, texels);
-    if (status != Status::ok) return status;
-    if (texture > UINT8_MAX) return Status::unknown_texture;
-    return player->player->read_changed(static_cast<uint8_t>(texture), texels);
-  });
+  return c::read(player, texture, view, &ContainerPlayer::read_changed);
 }
 
 const uint32_t* gicodec_player_changed(const gicodec_player* player, uint32_t texture,

@@ -78,11 +78,8 @@ void set(Field& field, Value value) noexcept {
                                    const VolumeDesc& volume, std::vector<StreamedTexture>& out) {
   if (is_missing(given, count) || count > kMaxVolumeTextures) return Status::invalid_argument;
   const auto textures = textures_of(volume);
-  const auto* at = reinterpret_cast<const std::byte*>(given);
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto* const one = reinterpret_cast<const gicodec_streamed_texture*>(at);
+  return take_each(given, count, [&](const gicodec_streamed_texture* one) -> Status {
     gicodec_streamed_texture taken;
-    if (one->struct_size != given->struct_size) return Status::invalid_argument;
     if (const Status status = take(one, taken); status != Status::ok) return status;
     if (taken.texture >= textures.size()) return Status::unknown_texture;
     StreamedTexture texture;
@@ -92,15 +89,8 @@ void set(Field& field, Value value) noexcept {
     texture.max_error = taken.max_error;
     texture.source_error = taken.source_error;
     out.push_back(std::move(texture));
-    at += given->struct_size;
-  }
-  return Status::ok;
-}
-
-/// Numbers of volumes, textures and groups as the library has them.
-[[nodiscard]] Status narrow(std::uint32_t volume, std::uint16_t& out) noexcept {
-  out = static_cast<std::uint16_t>(volume);
-  return volume > UINT16_MAX ? Status::unknown_volume : Status::ok;
+    return Status::ok;
+  });
 }
 
 }  // namespace
@@ -109,18 +99,15 @@ void set(Field& field, Value value) noexcept {
 extern "C" {
 
 gicodec_status gicodec_server_create(const gicodec_server_options* options, gicodec_server** out) {
-  gicodec_server_options given;
-  if (const Status status = c::take(options, given); status != Status::ok) {
-    return c::number(status);
-  }
-  return c::create(given.host, out, [&](gicodec_server& handle) -> Status {
-    ServerOptions settings;
-    const Status status = c::take_options(given, handle.host, settings);
-    if (status != Status::ok) return status;
-    auto server = Server::create(settings);
-    if (server) handle.server.emplace(*std::move(server));
-    return server.status();
-  });
+  return c::create(options, out,
+                   [&](gicodec_server& handle, const gicodec_server_options& given) -> Status {
+                     ServerOptions settings;
+                     const Status status = c::take_options(given, handle.host, settings);
+                     if (status != Status::ok) return status;
+                     auto server = Server::create(settings);
+                     if (server) handle.server.emplace(*std::move(server));
+                     return server.status();
+                   });
 }
 
 void gicodec_server_destroy(gicodec_server* server) { c::destroy(server); }
@@ -151,7 +138,7 @@ gicodec_status gicodec_server_add_volume(gicodec_server* server, const char* nam
 gicodec_status gicodec_server_remove_volume(gicodec_server* server, uint32_t volume) {
   return c::call(server, [&] {
     uint16_t id = 0;
-    const Status status = c::narrow(volume, id);
+    const Status status = c::narrow(volume, id, Status::unknown_volume);
     return status == Status::ok ? server->server->remove_volume(id) : status;
   });
 }
@@ -162,7 +149,7 @@ gicodec_status gicodec_server_publish(gicodec_server* server, uint32_t volume, u
   return c::call(server, [&] {
     uint16_t id = 0;
     ConstTextureView texels;
-    Status status = c::narrow(volume, id);
+    Status status = c::narrow(volume, id, Status::unknown_volume);
     if (status == Status::ok) status = c::take_view(view, texels);
     if (status != Status::ok) return status;
     if (texture > UINT8_MAX) return Status::unknown_texture;
@@ -179,7 +166,7 @@ gicodec_status gicodec_server_scroll(gicodec_server* server, uint32_t volume, in
                                      int32_t z) {
   return c::call(server, [&] {
     uint16_t id = 0;
-    const Status status = c::narrow(volume, id);
+    const Status status = c::narrow(volume, id, Status::unknown_volume);
     return status == Status::ok ? server->server->scroll(id, {x, y, z}) : status;
   });
 }
@@ -188,7 +175,7 @@ gicodec_status gicodec_server_set_active(gicodec_server* server, uint32_t volume
                                          const uint8_t* active, size_t count) {
   return c::call(server, [&] {
     uint16_t id = 0;
-    const Status status = c::narrow(volume, id);
+    const Status status = c::narrow(volume, id, Status::unknown_volume);
     if (status != Status::ok) return status;
     if (group > UINT8_MAX) return Status::unknown_group;
     if (c::is_missing(active, count)) return Status::invalid_argument;
@@ -236,7 +223,7 @@ gicodec_status gicodec_server_set_visible(gicodec_server* server, uint32_t conne
                                           size_t count) {
   return c::call(server, [&] {
     uint16_t id = 0;
-    const Status status = c::narrow(volume, id);
+    const Status status = c::narrow(volume, id, Status::unknown_volume);
     if (status != Status::ok) return status;
     if (group > UINT8_MAX) return Status::unknown_group;
     if (c::is_missing(visible, count)) return Status::invalid_argument;

@@ -10,10 +10,11 @@ from ._library import (ArgumentError, BackendError, Error, FormatError, Mismatch
                        library)
 from .arrays import decode, encode
 from .codec import Decoder, Encoder, VolumeDecoder, VolumeEncoder, peek
-from .container import File, Texture, Volume, Writer, open
+from .container import File, Texture, Volume, open
 from .description import (TextureDesc, VolumeDesc, ddgi_irradiance, ddgi_visibility, layouts,
                           map_texture)
 from .session import Client, Server
+from .writer import Writer
 
 __version__ = library.version_text().decode()
 

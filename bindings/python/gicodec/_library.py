@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import functools
 import pathlib
 
 from . import _interface as c
@@ -69,27 +70,27 @@ class _Library:
     def __init__(self) -> None:
         self._dll = _load()
 
-    def __getattr__(self, name: str):
-        result, parameters = c.CALLS["gicodec_" + name]
+    @functools.lru_cache(maxsize=None)
+    def _function(self, name: str):
         function = getattr(self._dll, "gicodec_" + name)
-        function.restype, function.argtypes = result, parameters
-        call = function
-        if "gicodec_" + name in c.FALLIBLE:
+        function.restype, function.argtypes = c.CALLS["gicodec_" + name]
+        return function
 
-            def call(*arguments):
-                status = function(*arguments)
-                if status != c.OK:
-                    raise error_of(status)
+    def __getattr__(self, name: str):
+        function = self._function(name)
 
+        def checked(*arguments):
+            status = function(*arguments)
+            if status != c.OK:
+                raise error_of(status)
+
+        call = checked if "gicodec_" + name in c.FALLIBLE else function
         setattr(self, name, call)
         return call
 
     def status_of(self, name: str, *arguments) -> int:
         """The status of a call, also where it is no success."""
-        result, parameters = c.CALLS["gicodec_" + name]
-        function = getattr(self._dll, "gicodec_" + name)
-        function.restype, function.argtypes = result, parameters
-        return function(*arguments)
+        return self._function(name)(*arguments)
 
 
 library = _Library()
@@ -97,10 +98,10 @@ library = _Library()
 
 def sized(kind: type, **fields):
     """A struct of its own size; its fields by name."""
-    known = [name for name, _ in kind._fields_]
     for name in fields:
-        if name not in known:
-            raise TypeError(f"there is no {name!r}: {', '.join(known[1:])} are")
+        if not hasattr(kind, name):
+            known = ", ".join(field for field, _ in kind._fields_[1:])
+            raise TypeError(f"there is no {name!r}: {known} are")
     return kind(struct_size=ctypes.sizeof(kind), **fields)
 
 

@@ -6,8 +6,9 @@ import json
 
 import numpy as np
 
-from . import container
+from .container import File
 from .description import VolumeDesc, map_texture
+from .writer import Writer
 
 # An array's type as a format of one component; others are kept as unsigned integers of their size.
 _FORMATS = {"float16": "R16_SFLOAT", "float32": "R32_SFLOAT", "uint8": "R8_UINT", "int8": "R8_UINT",
@@ -70,7 +71,7 @@ def encode(data, level: int | str | None = None, *, max_error: float = 0, thread
     else:
         writer_volumes["array"] = VolumeDesc(
             "textures", {"array": map_texture((1, 1, 1), format, (1, 1, 1))})
-    writer = container.Writer(None, writer_volumes, metadata=about, preset=_preset(level),
+    writer = Writer(None, writer_volumes, metadata=about, preset=_preset(level),
                               max_error=max_error, threads=threads, gop=0)
     with writer:
         if array.size:
@@ -88,7 +89,7 @@ def encode(data, level: int | str | None = None, *, max_error: float = 0, thread
 def decode(data, *, out: np.ndarray | None = None, limits: dict | None = None,
            threads: int = 1) -> np.ndarray:
     """The array of encode(); into ``out``, an array of its shape and type, if given."""
-    with container.File(data, threads=threads, limits=limits) as file:
+    with File(data, threads=threads, limits=limits) as file:
         about = file.metadata.get("array")
         if about is None or "array" not in file:
             raise ValueError("these bytes hold no plain array: open them by gicodec.open()")

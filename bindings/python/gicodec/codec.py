@@ -12,8 +12,6 @@ from . import _interface as c
 from ._library import Handle, Host, address, byref, library, limits_of, sized
 from .description import TextureDesc, VolumeDesc, block_list
 
-Blocks = "str | Iterable[int]"
-
 
 def _options(host: Host, *, backend: str, preset: str | None, level: int, gop: int | None,
              max_error, chunk: int, texture_id: int = 0) -> c.gicodec_encoder_options:

@@ -1,4 +1,4 @@
-"""Containers (.gic): read their frames as arrays, write new ones."""
+"""Containers (.gic): their frames as arrays."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ import json
 import mmap
 import os
 import pathlib
-import secrets
 from typing import Iterator
 
 import numpy as np
@@ -15,7 +14,7 @@ import numpy as np
 from . import _interface as c
 from . import picture
 from ._library import Handle, Host, address, byref, decoded, error_of, library, limits_of, sized, text_of
-from .codec import VolumeEncoder, borrowed
+from .codec import borrowed
 from .description import TextureDesc, VolumeDesc
 
 
@@ -32,7 +31,7 @@ class _Player(Handle):
         super().__init__("player_open_memory", file._bytes.ctypes.data, file._bytes.nbytes,
                          byref(options))
         self._memory = file._bytes
-        self.frame = None
+        self.place = -1  # of the frame that was decoded; -1: the first one is next
         if texture is None:
             return
         wanted = (ctypes.c_uint32 * 1)(texture)
@@ -51,15 +50,15 @@ class _Player(Handle):
         size = count.value * 8
         return np.frombuffer(ctypes.string_at(at.value, size), np.uint64).tolist() if size else []
 
-    def go_to(self, frame: int, following: int | None) -> None:
-        """Decodes a frame; ``following`` is the one that next() would give."""
-        if frame == self.frame:
+    def go_to(self, place: int, frames: list[int]) -> None:
+        """Decodes a frame by its place; the one behind the last is decoded without a seek."""
+        if place == self.place:
             return
-        if frame != following:
-            library.player_seek(self._handle, frame)
-        self.frame = None
+        if place != self.place + 1:
+            library.player_seek(self._handle, frames[place])
+        self.place = -2  # nowhere, until it is decoded
         library.player_next(self._handle)
-        self.frame = frame
+        self.place = place
 
 
 class Texture:
@@ -136,9 +135,7 @@ class Texture:
         if tiling not in self._players:
             self._players[tiling] = _Player(self._file, self._number, tiling)
         player = self._players[tiling]
-        before = -1 if player.frame is None else frames.index(player.frame)
-        following = frames[before + 1] if before + 1 < len(frames) else None
-        player.go_to(frames[place], following)
+        player.go_to(place, frames)
         return player
 
     def __getitem__(self, index):
@@ -300,126 +297,3 @@ def open(source, *, threads: int = 1, limits: dict | None = None) -> File:
     ``limits`` bounds what a file may cost, by fields of gicodec_limits.
     """
     return File(source, threads=threads, limits=limits)
-
-
-class Writer:
-    """Writes a container.
-
-        with gicodec.Writer("x.gic", {"room": volume}) as writer:
-            writer.add(0, {"color": array, "vis": array})
-
-    The file appears under its name when the ``with`` block ends without an error; one of that name
-    stays unless ``overwrite`` is true. ``None`` as path: ``getvalue()`` has the bytes. Options of
-    VolumeEncoder may follow.
-    """
-
-    def __init__(self, path, volumes: dict[str, VolumeDesc], *, overwrite: bool = False,
-                 geometry: dict | None = None, metadata: dict[str, str] | None = None,
-                 scene: str = "", **options) -> None:
-        self._path = None if path is None else pathlib.Path(path)
-        self._overwrite = overwrite
-        if self._path is not None and not overwrite and self._path.exists():
-            raise FileExistsError(f"{self._path} exists: pass overwrite=True to replace it")
-        self._container = _Container(volumes, geometry or {}, metadata or {}, scene,
-                                     options.get("max_error", 0))
-        self._writer = _BytesWriter(self._container)
-        self._encoders: dict[str, VolumeEncoder] = {}
-        first = 0
-        for name, volume in volumes.items():
-            self._encoders[name] = VolumeEncoder(volume, first_texture=first, **options)
-            first += len(volume.textures)
-        self._stream, self._pieces = None, []
-        if self._path is not None:
-            self._work = self._path.with_name(f".{self._path.name}.{secrets.token_hex(4)}")
-            self._stream = self._work.open("xb")
-        self._drain()
-
-    def add(self, frame: int, textures: dict, volume: str | None = None, blocks="changed") -> None:
-        """Adds a frame of a volume; its name may be left out where there is one."""
-        name = volume if volume is not None else next(iter(self._encoders))
-        for packet in self._encoders[name].encode(textures, blocks):
-            self.add_packet(frame, packet)
-
-    def add_packet(self, frame: int, packet: bytes) -> None:
-        """Adds a packet as it is; its texture number names its texture."""
-        data = np.frombuffer(packet, np.uint8)
-        library.writer_add(self._writer._handle, frame, data.ctypes.data, data.nbytes)
-        self._drain()
-
-    def close(self) -> None:
-        """Ends the container, and gives the file its name."""
-        if self._writer._handle is None:
-            return
-        library.writer_finish(self._writer._handle)
-        self._drain()
-        self._end()
-        if self._stream is None:
-            return
-        self._stream.close()
-        if self._overwrite:
-            os.replace(self._work, self._path)
-            return
-        try:
-            os.link(self._work, self._path)  # unlike rename(), fails if somebody took the name
-        finally:
-            self._work.unlink()
-
-    def getvalue(self) -> bytes:
-        """The bytes of a Writer without a path."""
-        return b"".join(self._pieces)
-
-    def _drain(self) -> None:
-        piece = borrowed("writer_bytes", self._writer._handle, dtype=np.uint8).tobytes()
-        if self._stream is not None:
-            self._stream.write(piece)
-        else:
-            self._pieces.append(piece)
-        library.writer_take(self._writer._handle)
-
-    def _end(self) -> None:
-        for handle in (self._writer, self._container, *self._encoders.values()):
-            handle.close()
-
-    def __enter__(self) -> Writer:
-        return self
-
-    def __exit__(self, kind, *_) -> None:
-        if kind is None:
-            self.close()
-            return
-        self._end()
-        if self._stream is not None:
-            self._stream.close()
-            self._work.unlink()
-
-
-class _Container(Handle):
-    """The description that a Writer writes."""
-
-    _destroy = "container_destroy"
-
-    def __init__(self, volumes, geometry, metadata, scene, max_error) -> None:
-        super().__init__("container_create")
-        texture = 0
-        for place, (name, volume) in enumerate(volumes.items()):
-            library.container_add_volume(self._handle, name.encode(), volume._handle)
-            if name in geometry:
-                struct = sized(c.gicodec_geometry)
-                for field, value in geometry[name].items():
-                    getattr(struct, field)[:] = value
-                library.container_set_geometry(self._handle, place, byref(struct))
-            for number in range(len(volume.textures)):
-                bound = max_error[number] if hasattr(max_error, "__getitem__") else max_error
-                library.container_set_largest_error(self._handle, texture, bound)
-                texture += 1
-        for name, value in metadata.items():
-            library.container_add_metadata(self._handle, c.METADATA_CONTAINER, 0, name.encode(),
-                                           value.encode())
-        library.container_set_scene(self._handle, scene.encode(), 0)
-
-
-class _BytesWriter(Handle):
-    _destroy = "writer_destroy"
-
-    def __init__(self, container: _Container) -> None:
-        super().__init__("writer_create", None, container._handle)

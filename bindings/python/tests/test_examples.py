@@ -4,7 +4,6 @@ import os
 import pathlib
 import re
 import shutil
-import socket
 import subprocess
 import sys
 import time
@@ -12,7 +11,6 @@ import time
 import numpy as np
 import pytest
 
-import gicodec
 from test_codec import recording
 
 EXAMPLES = pathlib.Path(__file__).resolve().parent.parent / "examples"
