@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <optional>
 
 namespace gicodec {
 namespace {
@@ -129,6 +130,39 @@ TEST_P(PlayerOfKinds, PlaysWhatWasPublished) {
       follow();
     }
     EXPECT_EQ(player->seek(1000), Status::unknown_frame);
+  }
+}
+
+// However the bytes arrive, no frame is ended before all its packets are there.
+TEST_P(PlayerOfKinds, PlaysWhileTheFileGrows) {
+  Generator random(9);
+  for (const Row& row : payload_rows()) {
+    SCOPED_TRACE(row.name);
+    const Recorded recorded = record(row.volume, GetParam(), random);
+    GrowingSource source(recorded.bytes, 0);
+    std::optional<ContainerPlayer> player;
+    std::size_t played = 0;
+    Status status = Status::ok;
+    for (; status != Status::end; source.visible += 1 + random() % 60) {
+      source.visible = std::min(source.visible, recorded.bytes.size());
+      if (!player) {
+        ASSERT_EQ(source.seek(0), Status::ok);
+        auto opened = ContainerPlayer::open(source, {.kinds = {&kScenes}});
+        if (opened.status() == Status::truncated) continue;
+        ASSERT_TRUE(opened.ok());
+        player.emplace(*std::move(opened));
+        player->set_growing(true);
+      }
+      while ((status = player->next()) == Status::ok) {
+        ASSERT_LT(played, recorded.frames.size());
+        EXPECT_EQ(player->frame(), recorded.frames[played]);
+        EXPECT_EQ(compare(row.volume, recorded.contents[played], shown_by(*player, row.volume)),
+                  "");
+        ++played;
+      }
+      ASSERT_TRUE(status == Status::truncated || status == Status::end) << status;
+    }
+    EXPECT_EQ(played, recorded.frames.size());
   }
 }
 

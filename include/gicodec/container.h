@@ -131,6 +131,15 @@ struct ContainerPacket {
   std::vector<std::byte> bytes;
 };
 
+/// The version that a container's first bytes name.
+struct ContainerVersion {
+  static constexpr std::size_t kBytes = 10;  ///< where it ends
+  std::uint8_t major = 0;                    ///< this library reads kContainerMajor
+  std::uint8_t minor = 0;
+};
+/// Also of one that this library does not read. Errors: truncated, not_gicodec.
+[[nodiscard]] Result<ContainerVersion> container_version(std::span<const std::byte> head) noexcept;
+
 /// Reads a container front to back. If the source can seek and the index is sound, it can also read
 /// selected textures, and from any frame on. Of a file that was cut off or is growing it reads all
 /// packets before the end. Safe on hostile bytes. One thread at a time.

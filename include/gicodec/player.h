@@ -60,6 +60,9 @@ class ContainerPlayer {
   ///   failed packet, whose texture needs a keyframe. If the container itself is damaged, the error
   ///   comes after all packets before the damage; only seek() reaches those behind it.
   [[nodiscard]] Status next();
+  /// While the source grows, a frame may lack packets that have not arrived. If so, next() then
+  /// returns truncated, and goes on with that frame when it is called again.
+  void set_growing(bool growing) noexcept;
   /// Passes over the next frame: its packets are neither checked nor decoded. Their textures then
   /// need keyframes before next() can decode them.
   [[nodiscard]] Status skip();

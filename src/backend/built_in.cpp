@@ -9,7 +9,7 @@ namespace gicodec {
 namespace {
 
 constinit const ByteBackend kRaw(kBackendRaw, Compression::none);
-#ifdef GICODEC_DECODE_ONLY
+#ifdef GICODEC_NO_COMPRESSORS
 constinit const NativeBackend kNative;
 constexpr std::array<const Backend*, 2> kBuiltIn{&kRaw, &kNative};
 #else

@@ -13,6 +13,7 @@ namespace gicodec {
 /// thread, into out_of_memory.
 template <typename Body>
 [[nodiscard]] auto guarded(Body&& body) noexcept -> decltype(body()) {
+#ifdef __cpp_exceptions
   try {
     return body();
   } catch (const std::length_error&) {
@@ -24,6 +25,9 @@ template <typename Body>
   } catch (...) {
     return Status::backend_failed;
   }
+#else
+  return body();
+#endif
 }
 
 }  // namespace gicodec

@@ -4,11 +4,21 @@
 #include <gicodec/memory.h>
 
 #include <cstddef>
+#include <cstdlib>
 #include <limits>
 #include <new>
 #include <vector>
 
 namespace gicodec {
+
+/// Tells that there is no memory. A build without exceptions ends, as its standard library does.
+[[noreturn]] inline void fail_allocation() {
+#ifdef __cpp_exceptions
+  throw std::bad_alloc();
+#else
+  std::abort();
+#endif
+}
 
 /// Returns null if the allocation fails.
 [[nodiscard]] void* take_memory(std::size_t bytes, std::size_t alignment) noexcept;
@@ -41,7 +51,7 @@ struct Allocator {
   [[nodiscard]] T* allocate(std::size_t count) {
     const bool fits = count <= std::numeric_limits<std::size_t>::max() / sizeof(T);
     void* const memory = fits ? take_memory(count * sizeof(T), alignof(T)) : nullptr;
-    if (memory == nullptr) throw std::bad_alloc();
+    if (memory == nullptr) fail_allocation();
     return static_cast<T*>(memory);
   }
   void deallocate(T* memory, std::size_t) noexcept { give_back(memory, alignof(T)); }

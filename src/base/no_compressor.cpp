@@ -1,4 +1,4 @@
-// In place of compressor.cpp in a library that decodes alone: no LZ4, no Zstandard.
+// In place of compressor.cpp in a library without LZ4 and Zstandard.
 #include "base/compressor.h"
 
 #include <cstring>

@@ -81,7 +81,7 @@ std::string_view to_string(Status status) noexcept {
     case Status::not_gicodec:
       return "the input is not in this format";
     case Status::unsupported_version:
-      return "the format version is not supported";
+      return "the format's version is unknown to this library; a newer one may read it";
     case Status::unsupported_feature:
       return "the input needs a feature that this library lacks";
     case Status::description_mismatch:

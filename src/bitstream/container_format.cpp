@@ -15,6 +15,18 @@ constexpr auto kMaxOffset = std::numeric_limits<std::uint64_t>::max();
 
 }  // namespace
 
+Result<ContainerVersion> container_version(std::span<const std::byte> head) noexcept {
+  const auto magic = std::as_bytes(std::span(kMagic));
+  const std::size_t size = std::min(head.size(), magic.size());
+  // Another format's file may be shorter than this header.
+  if (!std::equal(magic.begin(), magic.begin() + static_cast<std::ptrdiff_t>(size), head.begin())) {
+    return Status::not_gicodec;
+  }
+  if (head.size() < ContainerVersion::kBytes) return Status::truncated;
+  return ContainerVersion{std::to_integer<std::uint8_t>(head[magic.size()]),
+                          std::to_integer<std::uint8_t>(head[magic.size() + 1])};
+}
+
 void append_entry(EntryType type, std::span<const std::byte> head, std::span<const std::byte> body,
                   std::vector<std::byte>& out) {
   const std::size_t start = out.size();

@@ -71,19 +71,15 @@ Result<std::span<const std::byte>> EntryReader::bytes(std::uint64_t offset, std:
 
 Status EntryReader::file_head() {
   buffer_.clear();
-  Status status = more(kMagic.size());
+  const Status status = more(kFileHeader);
   if (status != Status::ok && status != Status::truncated) return status;
-  // Another format's file may be shorter than this header.
-  const auto magic = std::as_bytes(std::span(kMagic)).first(buffer_.size());
-  if (!std::equal(buffer_.begin(), buffer_.end(), magic.begin(), magic.end())) {
-    return Status::not_gicodec;
-  }
-  if (status == Status::ok) status = more(kFileHeader - kMagic.size());
+  const auto version = container_version(buffer_);
+  if (!version) return version.status();
+  if (version->major != kContainerMajor)
+    return Status::unsupported_version;  // Any minor is readable.
   if (status != Status::ok) return status;
-  ByteReader fields(std::span<const std::byte>(buffer_).subspan(kMagic.size()));
-  if (fields.fixed<std::uint8_t>() != kContainerMajor) return Status::unsupported_version;
-  (void)fields.fixed<std::uint8_t>();  // Any minor version is readable.
-  return fields.fixed<std::uint16_t>() == 0 ? Status::ok : Status::unsupported_feature;
+  ByteReader features(std::span<const std::byte>(buffer_).subspan(ContainerVersion::kBytes));
+  return features.fixed<std::uint16_t>() == 0 ? Status::ok : Status::unsupported_feature;
 }
 
 Status EntryReader::read_head(std::uint64_t offset, FileEntry& entry) {

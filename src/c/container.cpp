@@ -4,6 +4,8 @@
 #include "c/json.h"
 #include "c/volume_desc.h"
 
+#include <gicodec/version.h>
+
 #include <limits>
 #include <utility>
 
@@ -162,6 +164,19 @@ const char* gicodec_container_scene(const gicodec_container* container, uint64_t
     *geometry = container == nullptr ? 0 : container->description.scene.geometry;
   }
   return container == nullptr ? "" : container->description.scene.name.c_str();
+}
+
+gicodec_status gicodec_container_version(const void* head, size_t size, uint32_t* major,
+                                         uint32_t* minor, uint32_t* readable) {
+  if (c::is_missing(head, size) || major == nullptr || minor == nullptr || readable == nullptr) {
+    return GICODEC_INVALID_ARGUMENT;
+  }
+  const auto version = container_version(c::bytes(head, size));
+  if (!version) return c::number(version.status());
+  *major = version->major;
+  *minor = version->minor;
+  *readable = kContainerMajor;
+  return GICODEC_OK;
 }
 
 uint32_t gicodec_container_volumes(const gicodec_container* container) {

@@ -2,10 +2,35 @@
 
 #include <array>
 #include <cmath>
-#include <cstdio>
+#include <string>
 #include <type_traits>
 
 namespace gicodec::c {
+namespace {
+
+/// Appends nine digits, which name every float, in any locale.
+void append(float value, std::string& text) {
+  double digits = std::abs(double{value});  // times ten to the exponent
+  int exponent = 0;
+  for (; digits >= 1e9; ++exponent) digits /= 10;
+  for (; digits != 0 && digits < 1e8; --exponent) digits *= 10;
+  std::string number = std::to_string(std::llround(digits));
+  for (; number.size() > 1 && number.back() == '0'; ++exponent) number.pop_back();
+  const int point = static_cast<int>(number.size()) + exponent;  // digits before it
+  if (std::signbit(value)) text += '-';
+  if (point > 12 || point < -4) {
+    if (number.size() > 1) number.insert(1, 1, '.');
+    text.append(number).append("e").append(std::to_string(point - 1));
+  } else if (exponent >= 0) {
+    text.append(number).append(static_cast<std::size_t>(exponent), '0');
+  } else if (point > 0) {
+    text.append(number.insert(static_cast<std::size_t>(point), 1, '.'));
+  } else {
+    text.append("0.").append(static_cast<std::size_t>(-point), '0').append(number);
+  }
+}
+
+}  // namespace
 
 void Json::begin(std::string_view name, char bracket) {
   lead(name);
@@ -68,15 +93,7 @@ void Json::add(std::string_view name, float value) {
     text_ += "null";
     return;
   }
-  std::array<char, 32> digits{};
-  (void)std::snprintf(digits.data(), digits.size(), "%.9g", double{value});
-  bool point = false;
-  for (const char c : std::string_view(digits.data())) {
-    const bool plain = (c >= '0' && c <= '9') || c == '-' || c == '+' || c == 'e';
-    if (plain) text_ += c;
-    if (!plain && !point) text_ += '.';  // whatever the program's locale has there
-    point = !plain;
-  }
+  append(value, text_);
 }
 
 void Json::add(std::string_view name, bool value) {

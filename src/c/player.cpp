@@ -154,6 +154,13 @@ gicodec_status gicodec_player_next(gicodec_player* player) {
   return c::call(player, [&] { return player->player->next(); });
 }
 
+gicodec_status gicodec_player_set_growing(gicodec_player* player, uint32_t growing) {
+  return c::call(player, [&] {
+    player->player->set_growing(growing != 0);
+    return Status::ok;
+  });
+}
+
 gicodec_status gicodec_player_seek(gicodec_player* player, uint64_t frame) {
   return c::call(player, [&] { return player->player->seek(frame); });
 }

@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-#ifdef GICODEC_DECODE_ONLY  // Small rather than fast.
+#ifdef GICODEC_SMALL  // Small rather than fast.
 #define GICODEC_INLINE inline
 #define GICODEC_INLINE_LAMBDA
 #define GICODEC_INLINE_STEP [[gnu::noinline]]

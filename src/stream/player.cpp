@@ -156,7 +156,7 @@ Status ContainerPlayer::State::gather() {
       return room;
     }
     const Status more = read_ahead();
-    if (more == Status::out_of_memory) return more;
+    if (is_repeated(more)) return more;
     if (more != Status::ok) postponed = more;
   }
   gathering = false;
@@ -198,7 +198,7 @@ Status ContainerPlayer::State::advance(bool decoding) {
       continue;
     }
     const Status more = read_ahead();
-    if (more == Status::out_of_memory) return more;
+    if (is_repeated(more)) return more;
     if (gathering || (more == Status::ok && next_packet->frame <= frame)) {
       if (more != Status::ok) postponed = more;
       status = gather();
@@ -224,6 +224,8 @@ Status ContainerPlayer::State::advance(bool decoding) {
   decoders.settle_changes(false);
   return status;
 }
+
+void ContainerPlayer::set_growing(bool growing) noexcept { state_->growing = growing; }
 
 Status ContainerPlayer::next() {
   return guarded([&] { return state_->advance(true); });

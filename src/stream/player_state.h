@@ -28,6 +28,10 @@ struct ContainerPlayer::State {
   [[nodiscard]] bool is_played(std::uint8_t texture) const noexcept {
     return texture < entries().size() && is_known(entries()[texture]);
   }
+  /// True if the call that ends so goes on with the same frame when it is repeated.
+  [[nodiscard]] bool is_repeated(Status status) const noexcept {
+    return status == Status::out_of_memory || (growing && status == Status::truncated);
+  }
   [[nodiscard]] const std::vector<TextureEntry>& entries() const noexcept {
     return reader.description().textures;
   }
@@ -43,6 +47,7 @@ struct ContainerPlayer::State {
   std::size_t packet_count = 0, applied = 0;
   std::uint64_t packet_bytes = 0;
   bool gathering = false;  ///< gather() did not end: the frame may have further packets
+  bool growing = false;
 
   std::uint64_t frame = 0;  ///< of the last next() or skip()
   bool in_frame = false;    ///< that call failed within the frame; the next call continues it

@@ -6,7 +6,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdlib>
 #include <cstring>
+#include <random>
+#include <string>
+#include <vector>
 
 namespace gicodec {
 namespace {
@@ -218,6 +224,55 @@ TEST(CContainer, CallersFunctions) {
     EXPECT_EQ(last, GICODEC_TRUNCATED);
   }
   gicodec_player_destroy(player);
+}
+
+TEST(CContainer, JsonNamesEveryFloat) {
+  CRecording recording(nullptr);
+  std::vector<float> values{0.F,    -0.F,      0.1F,          1.F / 3, 16777216.F, 123456792.F,
+                            1e-45F, 1.17e-38F, 3.4028235e38F, 1e-5F,   0.00012F,   -2.5e12F};
+  std::minstd_rand random(11);
+  while (values.size() < 3000) {
+    const float value =
+        std::bit_cast<float>(static_cast<std::uint32_t>(random() * 2 + random() % 2));
+    if (std::isfinite(value)) values.push_back(value);
+  }
+  auto geometry = geometry_of(recording.desc);
+  for (std::size_t i = 0; i < values.size(); i += 3) {
+    std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(i), 3, geometry.origin);
+    ASSERT_EQ(gicodec_container_set_geometry(recording.container.get(), 0, &geometry), GICODEC_OK);
+    std::vector<char> json(4096);
+    std::size_t size = 0;
+    ASSERT_EQ(gicodec_container_json(recording.container.get(), json.data(), json.size(), &size),
+              GICODEC_OK);
+    const char* at = std::strstr(json.data(), R"("origin":[)") + 9;
+    for (const float value : geometry.origin) {
+      char* end = nullptr;
+      EXPECT_EQ(std::bit_cast<std::uint32_t>(std::strtof(at + 1, &end)),
+                std::bit_cast<std::uint32_t>(value))
+          << std::string_view(at, 40);
+      at = end;
+    }
+  }
+}
+
+TEST(CContainer, AFrameOfAGrowingFileWaitsForItsEnd) {
+  CFile file;
+  const auto sink = file.sink();
+  CRecording recording(&sink);
+  ASSERT_EQ(recording.add(0), GICODEC_OK);
+  ASSERT_EQ(recording.add(1), GICODEC_OK);
+  const auto source = file.source(true);
+  const auto player =
+      made<OwnedPlayer>([&](auto out) { return gicodec_player_open(&source, nullptr, out); });
+  ASSERT_TRUE(player);
+  ASSERT_EQ(gicodec_player_set_growing(player.get(), 1), GICODEC_OK);
+  EXPECT_EQ(gicodec_player_next(player.get()), GICODEC_OK);
+  EXPECT_EQ(gicodec_player_next(player.get()), GICODEC_TRUNCATED);
+  EXPECT_EQ(gicodec_player_next(player.get()), GICODEC_TRUNCATED);
+  ASSERT_EQ(gicodec_player_set_growing(player.get(), 0), GICODEC_OK);
+  EXPECT_EQ(gicodec_player_next(player.get()), GICODEC_OK);
+  EXPECT_EQ(gicodec_player_frame(player.get()), 12U);
+  EXPECT_EQ(gicodec_player_next(player.get()), GICODEC_TRUNCATED);
 }
 
 TEST(CContainer, BytesAreTakenInPieces) {

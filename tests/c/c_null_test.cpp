@@ -191,6 +191,12 @@ TEST(CNull, NullInPlaceOfAHandleOrAnOutput) {
   EXPECT_EQ(gicodec_container_texture(container, 1, &desc, nullptr), GICODEC_UNKNOWN_TEXTURE);
   EXPECT_EQ(gicodec_container_largest_error(container, 1), std::numeric_limits<float>::infinity());
   EXPECT_EQ(gicodec_container_json(nullptr, nullptr, 0, &size), kInvalid);
+  std::uint32_t major = 0;
+  EXPECT_EQ(gicodec_container_version(nullptr, 10, &major, &major, &major), kInvalid);
+  EXPECT_EQ(gicodec_container_version("", 0, nullptr, &major, &major), kInvalid);
+  EXPECT_EQ(gicodec_container_version("", 0, &major, nullptr, &major), kInvalid);
+  EXPECT_EQ(gicodec_container_version("", 0, &major, &major, nullptr), kInvalid);
+  EXPECT_EQ(gicodec_container_version("", 0, &major, &major, &major), GICODEC_TRUNCATED);
 
   gicodec_writer* writer = nullptr;
   auto sink = sized<gicodec_sink>();
@@ -217,6 +223,7 @@ TEST(CNull, NullInPlaceOfAHandleOrAnOutput) {
   EXPECT_EQ(gicodec_player_open_memory(bytes, size, nullptr, nullptr), kInvalid);
   EXPECT_EQ(gicodec_player_container(nullptr), nullptr);
   EXPECT_EQ(gicodec_player_select(nullptr, nullptr, 0), kInvalid);
+  EXPECT_EQ(gicodec_player_set_growing(nullptr, 1), kInvalid);
   EXPECT_EQ(gicodec_player_set_layout(nullptr, 0, &desc), kInvalid);
   EXPECT_EQ(gicodec_player_next(nullptr), kInvalid);
   EXPECT_EQ(gicodec_player_seek(nullptr, 0), kInvalid);

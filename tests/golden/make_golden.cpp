@@ -2,12 +2,15 @@
 #include "golden/make_golden.h"
 
 #include "bitstream/region_field.h"
+#include "golden/hashes.h"
 #include "golden/map_golden.h"
 #include "golden/native_golden.h"
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <map>
+#include <set>
 
 namespace gicodec::golden {
 namespace {
@@ -100,6 +103,21 @@ Bytes native_sequence(const ContainerDescription& description, const std::string
                       });
 }
 
+/// What every decoder makes of the containers, in the order of their names.
+void save_hashes() {
+  std::set<std::filesystem::path> containers;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() == ".gic") containers.insert(entry.path());
+  }
+  std::string lines;
+  for (const auto& path : containers) {
+    std::ifstream file(path, std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+    lines += lines_of(path.filename().string(), std::as_bytes(std::span(bytes)));
+  }
+  save("hashes.txt", std::as_bytes(std::span(lines)));
+}
+
 }  // namespace
 
 void must(Status status) {
@@ -157,5 +175,6 @@ int main(int argc, char** argv) {
   blocks();
   save_damaged_packets();
   save_damaged_containers();
+  save_hashes();
   return 0;
 }

@@ -7,8 +7,10 @@
 #include "volume_words.h"
 
 #include <gicodec/probes.h>
+#include <gicodec/version.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -116,7 +118,19 @@ void ContainerInput::open() {
   if (player.status() == Status::not_gicodec) {
     fail(Exit::bad_input, "{}: is not a .gic container", path_);
   }
+  if (player.status() == Status::unsupported_version) refuse_version();
   player_.emplace(take(std::move(player), path_));
+}
+
+void ContainerInput::refuse_version() {
+  std::array<std::byte, ContainerVersion::kBytes> head{};
+  const bool again = source_->seek(0) == Status::ok && source_->read(head).ok();
+  const auto version = container_version(head);
+  fail(Exit::bad_input,
+       "{}: is a container of {}; gicodec {} reads version {}: take a newer gicodec", path_,
+       again && version ? fmt::format("version {}.{}", version->major, version->minor)
+                        : std::string("another version"),
+       kVersionString, kContainerMajor);
 }
 
 void ContainerInput::prepare() {

@@ -116,6 +116,7 @@ class ContainerInput {
     std::uint64_t bytes_read_ = 0;
   };
   void open();
+  [[noreturn]] void refuse_version();
   [[nodiscard]] StoredTexture stored(const TextureEntry& entry) const;
   /// Sets the player's selection, and the layouts of dumps.
   void prepare();

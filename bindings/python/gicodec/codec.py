@@ -253,13 +253,18 @@ class VolumeDecoder(Handle):
         host = Host(threads, isa)
         options = _decoder_options(host, limits, first_texture)
         self.textures = volume.textures
+        self._first, self._changed = first_texture, {}
         super().__init__("volume_decoder_create", volume._handle, byref(options))
 
     def decode(self, packets: Iterable[bytes]) -> None:
         """Applies the packets of an update, in their order."""
+        self._changed = {}
         for packet in packets:
             data = np.frombuffer(packet, np.uint8)
             library.volume_decoder_decode(self._handle, data.ctypes.data, data.nbytes)
+            place = peek(packet)["texture_id"] - self._first
+            self._changed[place] = borrowed("volume_decoder_changed", self._handle, place,
+                                            dtype=np.uint32)
 
     def read(self, name: str, out: np.ndarray | None = None) -> np.ndarray:
         place = list(self.textures).index(name)
@@ -268,8 +273,8 @@ class VolumeDecoder(Handle):
         return out
 
     def changed(self, name: str) -> np.ndarray:
-        place = list(self.textures).index(name)
-        return borrowed("volume_decoder_changed", self._handle, place, dtype=np.uint32)
+        """Blocks of a texture that the last update may have changed, ascending."""
+        return self._changed.get(list(self.textures).index(name), np.zeros(0, np.uint32))
 
 
 def peek(packet) -> dict:

@@ -13,9 +13,18 @@ import numpy as np
 
 from . import _interface as c
 from . import picture
-from ._library import Handle, Host, address, byref, decoded, error_of, library, limits_of, sized, text_of
+from ._library import (Error, Handle, Host, address, byref, decoded, error_of, library, limits_of,
+                       sized, text_of)
 from .codec import borrowed
 from .description import TextureDesc, VolumeDesc
+
+
+def _unknown_version(data: np.ndarray) -> str:
+    major, minor, readable = ctypes.c_uint32(), ctypes.c_uint32(), ctypes.c_uint32()
+    library.container_version(data.ctypes.data, data.nbytes, byref(major), byref(minor),
+                              byref(readable))
+    return (f"the container has version {major.value}.{minor.value}, and gicodec "
+            f"{decoded(library.version_text())} reads version {readable.value}: take a newer gicodec")
 
 
 class _Player(Handle):
@@ -28,8 +37,13 @@ class _Player(Handle):
         options = sized(c.gicodec_player_options, host=address(host.struct))
         limits = limits_of(file._limits)
         options.limits = address(limits) if limits else None
-        super().__init__("player_open_memory", file._bytes.ctypes.data, file._bytes.nbytes,
-                         byref(options))
+        try:
+            super().__init__("player_open_memory", file._bytes.ctypes.data, file._bytes.nbytes,
+                             byref(options))
+        except Error as error:
+            if error.status == c.UNSUPPORTED_VERSION:
+                error.args = (_unknown_version(file._bytes),)
+            raise
         self._memory = file._bytes
         self.place = -1  # of the frame that was decoded; -1: the first one is next
         if texture is None:

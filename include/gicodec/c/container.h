@@ -146,6 +146,12 @@ typedef struct gicodec_player gicodec_player;
 GICODEC_C_API gicodec_status gicodec_player_open(const gicodec_source* source,
                                                  const gicodec_player_options* options,
                                                  gicodec_player** out);
+/// The version that a container's first 10 bytes name, also of one that this library does not read,
+/// upon which gicodec_player_open() says GICODEC_UNSUPPORTED_VERSION; it reads `readable`.
+/// GICODEC_TRUNCATED, GICODEC_NOT_GICODEC.
+GICODEC_C_API gicodec_status gicodec_container_version(const void* head, size_t size,
+                                                       uint32_t* major, uint32_t* minor,
+                                                       uint32_t* readable);
 /// Plays from memory, which must outlive the player.
 GICODEC_C_API gicodec_status gicodec_player_open_memory(const void* bytes, size_t size,
                                                         const gicodec_player_options* options,
@@ -165,6 +171,9 @@ GICODEC_C_API gicodec_status gicodec_player_set_layout(gicodec_player* player, u
 /// off or is growing. After another error the frame is incomplete, and the next call goes on behind
 /// it.
 GICODEC_C_API gicodec_status gicodec_player_next(gicodec_player* player);
+/// Not 0 while the source grows: gicodec_player_next() then ends no frame whose packets may not all
+/// have arrived; it returns GICODEC_TRUNCATED, and goes on with that frame when it is called again.
+GICODEC_C_API gicodec_status gicodec_player_set_growing(gicodec_player* player, uint32_t growing);
 /// The next gicodec_player_next() applies that frame. GICODEC_UNKNOWN_FRAME.
 GICODEC_C_API gicodec_status gicodec_player_seek(gicodec_player* player, uint64_t frame);
 /// The frame of the last gicodec_player_next().
