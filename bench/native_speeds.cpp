@@ -4,8 +4,8 @@
 //
 // Sessions of one thread on 4,096 made-up probes, all of which change in every update. Prints MB of
 // records per second, the best of the updates of so many seconds, a line per set, preset and
-// texture: set, preset, texture, encode, decode. Needs no files, so that WebAssembly and other
-// machines can be measured by the same program (script/wasm-speed).
+// texture: set, preset, texture, encode, decode. Needs no files, so that other machines can be
+// measured by the same program.
 #include "volume.h"
 
 #include <gicodec/gicodec.h>

@@ -1,0 +1,22 @@
+// The entry "gicodec/client".
+import * as client from './client.js';
+import {Connection} from './connection.js';
+import {Module} from './module.js';
+import texts from 'gicodec:module/client';
+
+const module = new Module(texts);
+
+export {GicodecError} from './error.js';
+export {simd, supported} from './module.js';
+
+export const ready = {then: (...handlers) => module.compiled().then(() => undefined).then(...handlers)};
+export const useModule = (source) => module.use(source);
+
+export const Client = {create: (options) => client.Client.create(module, options)};
+
+/** Follows a server over WebSockets. */
+export async function connect(url, {onUpdate, onLost, everything, signal, WebSocket, ...options} = {}) {
+  signal?.throwIfAborted();
+  const made = await client.Client.create(module, options);
+  return new Connection(made, url, {onUpdate, onLost, everything, signal, WebSocket});
+}

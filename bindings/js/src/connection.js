@@ -1,0 +1,109 @@
+// A client over a WebSocket, which comes back after a lost connection.
+
+/** Follows a server: calls onUpdate(client) after each message that changed what the client holds. */
+export class Connection {
+  #url;
+  #options;
+  #socket = null;
+  #ended = false;
+  #wait = 0;
+  #timer = 0;
+  #end;
+
+  constructor(client, url, options) {
+    this.client = client;
+    this.#url = url;
+    this.#options = options;
+    /** Resolves with the reason once the session has ended; rejects if it cannot go on. */
+    this.closed = new Promise((resolve, reject) => (this.#end = {resolve, reject}));
+    this.closed.catch(() => {});  // unless somebody waits for it, it may fail unheard
+    options.signal?.addEventListener('abort', () => this.#fail(options.signal.reason), {once: true});
+    if (options.signal?.aborted) this.#fail(options.signal.reason);
+    else this.#connect();
+  }
+
+  #connect() {
+    const Socket = this.#options.WebSocket ?? globalThis.WebSocket;
+    const socket = new Socket(this.#url, 'gicodec');
+    this.#socket = socket;
+    socket.binaryType = 'arraybuffer';
+    socket.onopen = () => this.#guard(() => socket.send(this.client.hello()));
+    socket.onmessage = ({data}) => this.#guard(() => this.#take(data));
+    socket.onclose = () => socket === this.#socket && this.#again();
+    socket.onerror = () => {};  // close follows
+  }
+
+  #guard(body) {
+    try {
+      body();
+    } catch (error) {
+      this.#fail(error);
+    }
+  }
+
+  #take(message) {
+    const {client} = this;
+    const before = client.state.serial;
+    const goesOn = client.receive(message);
+    this.#wait = 0;
+    if (goesOn && this.#options.everything !== false) this.#chooseAll();
+    this.send();
+    if (!goesOn) return this.#finish(client.state.reason);
+    const {serial, consistent} = client.state;
+    if (serial !== before && consistent) this.#options.onUpdate?.(client);
+  }
+
+  #chosen = new Set();
+
+  /** Without a viewpoint or a choice of blocks a server sends nothing. */
+  #chooseAll() {
+    for (const volume of this.client.volumes) {
+      if (this.#chosen.has(volume.id)) continue;
+      this.#chosen.add(volume.id);
+      volume.groups.forEach((_, group) => {
+        const [first] = volume.groups[group].textures;
+        const desc = volume.textures.find((texture) => texture.name === first.name);
+        this.client.subscribe(volume.number, new Uint8Array(desc.blocks).fill(1), group);
+      });
+    }
+  }
+
+  /** Sends what the client has to say, e.g. after client.setViewpoint(). */
+  send() {
+    if (this.#socket?.readyState !== 1) return;
+    for (const message of this.client.messages()) this.#socket.send(message);
+  }
+
+  #again() {
+    if (this.#ended) return;
+    this.#wait = Math.min(Math.max(this.#wait * 2, 250), 8000);
+    this.#options.onLost?.(this.#wait);
+    this.#timer = setTimeout(() => this.#guard(() => this.#connect()), this.#wait);
+  }
+
+  /** Ends the session for good. */
+  close() {
+    if (this.#ended) return;
+    this.#guard(() => {
+      this.client.disconnect();
+      this.send();
+    });
+    this.#finish('');
+  }
+
+  #finish(reason) {
+    this.#stop();
+    this.#end.resolve(reason);
+  }
+
+  #fail(error) {
+    this.#stop();
+    this.#end.reject(error);
+  }
+
+  #stop() {
+    this.#ended = true;
+    clearTimeout(this.#timer);
+    this.#socket?.close();
+  }
+}

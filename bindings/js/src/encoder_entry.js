@@ -1,0 +1,30 @@
+// The entry "gicodec/encoder".
+import * as encoder from './encoder.js';
+import {Module} from './module.js';
+import * as writer from './writer.js';
+import texts from 'gicodec:module/encoder';
+
+const module = new Module(texts);
+
+export {GicodecError} from './error.js';
+export {simd, supported} from './module.js';
+
+export const ready = {then: (...handlers) => module.compiled().then(() => undefined).then(...handlers)};
+export const useModule = (source) => module.use(source);
+
+export const Encoder = {create: (desc, options) => encoder.Encoder.create(module, desc, options)};
+export const VolumeEncoder = {
+  create: (volume, options) => encoder.VolumeEncoder.create(module, volume, options),
+};
+export const Writer = {create: (volumes, options) => writer.Writer.create(module, volumes, options)};
+
+export const ddgiIrradiance = (grid, format = 'A2B10G10R10_UNORM_PACK32') =>
+  encoder.described(module, 'ddgi_irradiance', grid, format);
+export const ddgiVisibility = (grid, format = 'R16G16_SFLOAT') =>
+  encoder.described(module, 'ddgi_visibility', grid, format);
+export const mapTexture = ([width, height = 1, depth = 1], format, block = [16, 16, 1]) =>
+  encoder.described(module, 'map_texture', [width, height, depth, ...block], format);
+export const volumeOfLayout = (layout, grid) =>
+  encoder.volumeOf(module, 'volume_desc_from_layout', [layout, ...grid]);
+export const layouts = () => encoder.layouts(module);
+export const formats = () => encoder.formats(module);

@@ -1,0 +1,17 @@
+import {STATUS_NAMES} from './interface.js';
+
+/** What a call of the library, or damaged bytes, lead to. */
+export class GicodecError extends Error {
+  /**
+   * @param {number} status one of the library's statuses, e.g. 301
+   * @param {string} text
+   * @param {ErrorOptions} [options]
+   */
+  constructor(status, text, options) {
+    super(text, options);
+    this.name = 'GicodecError';
+    this.status = status;
+    /** The status by name, e.g. "corrupt". */
+    this.code = STATUS_NAMES[status] ?? 'unknown';
+  }
+}

@@ -1,0 +1,161 @@
+// A player on the thread that it is called on: the page's, or a worker's.
+import {placeOf, readDesc} from './description.js';
+import {GicodecError} from './error.js';
+import {bytesOf} from './instance.js';
+import {
+  END, OK, OUT_OF_MEMORY, TRUNCATED, UNKNOWN_KIND, UNSUPPORTED_VERSION,
+  limits as limitsStruct, playerOptions, textureDesc, view,
+} from './interface.js';
+
+export class LocalPlayer {
+  #instance;
+  #player = 0;
+  #arrived = false;  // all bytes have
+  #staged = new Map();  // by texture: where it lies as of the last frame that was read
+  #played = false;
+  #head = [];  // the first bytes, which name the version
+
+  constructor(instance) {
+    this.#instance = instance;
+  }
+
+  /** Takes bytes of the container, in order. */
+  append(chunk) {
+    const bytes = bytesOf(chunk);
+    const at = this.#instance.call('source_grow', bytes.length) >>> 0;
+    if (at === 0) throw this.#instance.error(OUT_OF_MEMORY, 'the bytes of the container');
+    this.#instance.bytes(at, bytes.length).set(bytes);
+    if (this.#head.length < 10) this.#head.push(...bytes.subarray(0, 10 - this.#head.length));
+  }
+
+  /** Says that these were all. */
+  finish() {
+    this.#arrived = true;
+    if (this.#player) this.#instance.check('player_set_growing', [this.#player, 0]);
+  }
+
+  /** Opens what has arrived; null: more bytes are needed. Returns what the container holds. */
+  open({limits, textures} = {}) {
+    const instance = this.#instance;
+    const status = instance.with((memory) => {
+      const options = memory.struct(playerOptions, {limits: limits && memory.struct(limitsStruct, limits)});
+      const out = memory.room(4);
+      const got = instance.call('player_open', instance.call('source_arrived'), options, out);
+      this.#player = instance.word(out);
+      return got;
+    });
+    if (status === TRUNCATED && !this.#arrived) return null;
+    if (status === UNSUPPORTED_VERSION) throw this.#unknownVersion();
+    if (status !== OK) throw instance.error(status, 'the container');
+    instance.check('player_set_growing', [this.#player, this.#arrived ? 0 : 1]);
+    const container = this.#container();
+    this.textures = container.textures;
+    if (textures) this.#select(textures);
+    return container;
+  }
+
+  #unknownVersion() {
+    const instance = this.#instance;
+    return instance.with((memory) => {
+      const [major, minor, readable] = [0, 0, 0].map(() => memory.room(4));
+      instance.check('container_version', [memory.put(Uint8Array.from(this.#head)), 10, major, minor, readable]);
+      const version = instance.text(instance.call('version_text'));
+      return new GicodecError(UNSUPPORTED_VERSION, 'the container has version ' +
+        `${instance.word(major)}.${instance.word(minor)}, and gicodec ${version} reads version ` +
+        `${instance.word(readable)}: take a newer gicodec`);
+    });
+  }
+
+  #container() {
+    const instance = this.#instance;
+    const container = instance.call('player_container', this.#player);
+    const {scene, metadata, volumes, textures} = instance.json('container_json', container);
+    const named = (pairs) => Object.fromEntries(pairs);
+    return {
+      scene: scene.name, metadata: named(metadata),
+      volumes: volumes.map((one) => ({...one, metadata: named(one.metadata)})),
+      textures: textures.map((one, place) => {
+        const known = one.grid !== undefined;  // of a kind that the library knows
+        const desc = known ? instance.with((memory) => {
+          const at = memory.struct(textureDesc);
+          instance.check('container_texture', [container, place, at, 0]);
+          return readDesc(instance, at);
+        }) : {};
+        return {...desc, name: one.name, volume: one.volume, largestError: one.largestError ?? Infinity,
+                metadata: named(one.metadata)};
+      }),
+    };
+  }
+
+  #select(textures) {
+    const places = textures.map((one) => placeOf(this.textures, one));
+    this.#instance.with((memory) => this.#instance.check(
+        'player_select', [this.#player, memory.put(new Uint32Array(places)), places.length]));
+  }
+
+  /** Applies the next frame and returns its number; null at the end, undefined: more bytes needed. */
+  next() {
+    const status = this.#instance.call('player_next', this.#player);
+    if (status === END) return null;
+    if (status === TRUNCATED && !this.#arrived) return undefined;
+    if (status !== OK) throw this.#instance.error(status, `frame ${this.#played ? this.frame() : 0} or behind`);
+    this.#played = true;
+    return this.frame();
+  }
+
+  /** The number of the last frame. */
+  frame() {
+    return Number(this.#instance.call('player_frame', this.#player));
+  }
+
+  seek(frame) {
+    this.#instance.check('player_seek', [this.#player, BigInt(frame)], {what: `frame ${frame}`});
+  }
+
+  /** The frames that can be sought: those that have arrived. */
+  frames() {
+    const instance = this.#instance;
+    return instance.with((memory) => {
+      const at = memory.room(4), count = memory.room(4);
+      instance.check('player_frames', [this.#player, at, count], {what: 'the index of the frames'});
+      const numbers = instance.word(count);
+      return numbers ? Array.from(instance.array(BigUint64Array, instance.word(at), numbers), Number) : [];
+    });
+  }
+
+  /** A texture as of this frame, guard bands included: a typed array, `into` if given. */
+  read(texture, into) {
+    const {desc, place} = this.#texture(texture);
+    const out = into ?? new desc.ArrayType(desc.textureBytes / desc.ArrayType.BYTES_PER_ELEMENT);
+    const bytes = bytesOf(out);
+    if (bytes.length < desc.textureBytes) {
+      throw new RangeError(`"${desc.name}" has ${desc.textureBytes} bytes, the array ${bytes.length}`);
+    }
+    const instance = this.#instance;
+    const stage = this.#stage(place, desc);
+    instance.with((memory) => instance.check(
+        'player_read', [this.#player, place, memory.struct(view, {bytes: stage, size: desc.textureBytes})]));
+    bytes.set(instance.bytes(stage, desc.textureBytes));
+    return out;
+  }
+
+  #stage(place, desc) {
+    if (!this.#staged.has(place)) this.#staged.set(place, this.#instance.allocate(desc.textureBytes));
+    return this.#staged.get(place);
+  }
+
+  #texture(texture) {
+    const place = placeOf(this.textures, texture);
+    const desc = this.textures[place];
+    if (desc.grid === undefined) {
+      throw new GicodecError(UNKNOWN_KIND, `"${desc.name}" is of a kind that this version does not know`);
+    }
+    return {desc, place};
+  }
+
+  /** The blocks of a texture that the last frame may have changed, ascending; all after a seek. */
+  changed(texture) {
+    const {place} = this.#texture(texture);
+    return this.#instance.borrowed(Uint32Array, 'player_changed', this.#player, place);
+  }
+}

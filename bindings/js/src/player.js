@@ -1,0 +1,156 @@
+// Containers (.gic), from any source of bytes.
+import {placeOf} from './description.js';
+import {bytesOf} from './instance.js';
+import {place, useWorkers} from './workers.js';
+
+/** Frees in workers what the page has dropped. */
+const dropped = new FinalizationRegistry((host) => host.close());
+
+/** Plays a container, in order or from any frame on. See Player.open(). */
+export class Player {
+  #host;
+  #reader = null;   // of what has not arrived yet
+  #owned = false;   // its chunks are nobody else's
+  #signal;
+  #turn = Promise.resolve();
+
+  constructor(host, signal) {
+    this.#host = host;
+    this.#signal = signal;
+    dropped.register(this, host);
+  }
+
+  /** @internal */
+  static async open(module, source, {limits, textures, signal} = {}) {
+    signal?.throwIfAborted();
+    const given = await source;
+    const player = new Player(await place(module), signal);
+    try {
+      await player.#begin(given);
+      for (;;) {
+        const container = await player.#call('open', [{limits, textures}]);
+        if (container) return Object.assign(player, container);
+        await player.#more();
+      }
+    } catch (error) {
+      player.close();
+      throw error;
+    }
+  }
+
+  async #begin(given) {
+    let source = given;
+    if (typeof source === 'string' || source instanceof URL || source == null) {
+      throw new TypeError(`a container is a Response, bytes, a Blob or a stream, not ${source}: ` +
+                          'open(fetch(url)) takes it from the net');
+    }
+    if (typeof Response !== 'undefined' && source instanceof Response) {
+      if (!source.ok) throw new TypeError(`${source.url}: ${source.status} ${source.statusText}`);
+      this.#owned = true;
+      source = source.body ?? new Uint8Array();
+    } else if (typeof Blob !== 'undefined' && source instanceof Blob) {
+      this.#owned = true;
+      source = source.stream();
+    }
+    if (typeof source.getReader === 'function') {
+      const reader = source.getReader();
+      this.#reader = {next: () => reader.read(), cancel: (why) => reader.cancel(why)};
+    } else if (typeof source[Symbol.asyncIterator] === 'function') {  // a stream of Node
+      const iterator = source[Symbol.asyncIterator]();
+      this.#reader = {next: () => iterator.next(), cancel: async () => iterator.return?.()};
+    } else {
+      await this.#call('append', [bytesOf(source)]);
+      await this.#call('finish', []);
+    }
+  }
+
+  /** Passes on what arrives next, or that nothing does. */
+  async #more() {
+    const {done, value} = await this.#abortable(this.#reader.next());
+    if (done) {
+      this.#reader = null;
+      return this.#call('finish', []);
+    }
+    const bytes = bytesOf(value);
+    const whole = this.#owned && bytes.byteLength === bytes.buffer.byteLength;
+    return this.#call('append', [bytes], whole ? [bytes.buffer] : []);
+  }
+
+  #abortable(promise) {
+    const signal = this.#signal;
+    if (!signal) return promise;
+    return new Promise((resolve, reject) => {
+      const abort = () => {
+        this.close(signal.reason);
+        reject(signal.reason);
+      };
+      if (signal.aborted) return abort();
+      signal.addEventListener('abort', abort, {once: true});
+      promise.then(resolve, reject).finally(() => signal.removeEventListener('abort', abort));
+    });
+  }
+
+  async #call(method, values, transfer) {
+    if (!this.#host) throw this.#signal?.reason ?? new TypeError('the player is closed');
+    return this.#abortable(this.#host.call(method, values, transfer));
+  }
+
+  /** Runs one call after the other: players of workers are shared by nobody either. */
+  #inTurn(body) {
+    const turn = this.#turn.then(body);
+    this.#turn = turn.catch(() => {});
+    return turn;
+  }
+
+  /** Applies the next frame, once its bytes have arrived: its number, or null at the end. */
+  next() {
+    return this.#inTurn(async () => {
+      for (;;) {
+        const frame = await this.#call('next', []);
+        if (frame !== undefined) return frame;
+        await this.#more();
+      }
+    });
+  }
+
+  /** All frames from here on, by number. */
+  async* [Symbol.asyncIterator]() {
+    for (let frame = await this.next(); frame !== null; frame = await this.next()) yield frame;
+  }
+
+  /** The next next() applies that frame. Of a stream: one that has arrived. */
+  seek(frame) {
+    return this.#inTurn(() => this.#call('seek', [frame]));
+  }
+
+  /** The numbers of the frames that can be sought; of a stream: those that have arrived. */
+  frames() {
+    return this.#inTurn(() => this.#call('frames', []));
+  }
+
+  /**
+   * A texture as of the last frame, guard bands included. With `into` in that array, which a worker
+   * returns as another one over the same memory: go on with what this resolves to.
+   */
+  read(texture, into) {
+    return this.#inTurn(() => {
+      const values = [placeOf(this.textures, texture), into];
+      return this.#call('read', values, ArrayBuffer.isView(into) ? [into.buffer] : []);
+    });
+  }
+
+  /** The blocks of a texture that the last frame may have changed, ascending; all after a seek. */
+  changed(texture) {
+    return this.#inTurn(() => this.#call('changed', [placeOf(this.textures, texture)]));
+  }
+
+  /** Ends it and frees its memory. */
+  close(reason) {
+    this.#reader?.cancel(reason).catch(() => {});
+    this.#reader = null;
+    this.#host?.close();
+    this.#host = null;
+  }
+}
+
+export {useWorkers};

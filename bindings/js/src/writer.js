@@ -1,0 +1,96 @@
+// Containers, written frame by frame: with the encoders that make their packets.
+import {createVolume, texturesOf} from './description.js';
+import {VolumeEncoder} from './encoder.js';
+import {bytesOf} from './instance.js';
+import {
+  METADATA_CONTAINER, METADATA_TEXTURE, METADATA_VOLUME, geometry as geometryStruct,
+} from './interface.js';
+
+/** Writes a container of several volumes. */
+export class Writer {
+  #instance;
+  #handle;
+  #encoders = new Map();
+
+  /** @internal */
+  static async create(module, volumes, {scene = '', metadata = {}, ...options} = {}) {
+    const instance = await module.create();
+    const writer = new Writer();
+    writer.#instance = instance;
+    let first = 0;
+    const described = Object.entries(volumes);
+    for (const [name, volume] of described) {
+      const encoder = await VolumeEncoder.create(module, volume, {...options, firstTexture: first});
+      writer.#encoders.set(name, encoder);
+      first += encoder.textures.length;
+    }
+    const bounds = (place) => (Array.isArray(options.maxError) ? options.maxError[place] : options.maxError) ?? 0;
+    writer.#handle = instance.with((memory) => {
+      const out = memory.room(4);
+      instance.check('container_create', [out]);
+      const container = instance.word(out);
+      const note = (of, index, pairs = {}) => Object.entries(pairs).forEach(([name, value]) => instance.check(
+          'container_add_metadata', [container, of, index, memory.text(name), memory.text(value)], {what: name}));
+      note(METADATA_CONTAINER, 0, metadata);
+      instance.check('container_set_scene', [container, memory.text(scene), 0n]);
+      let texture = 0;
+      described.forEach(([name, volume], place) => {
+        instance.check('container_add_volume', [container, memory.text(name), createVolume(instance, volume)],
+            {what: name});
+        note(METADATA_VOLUME, place, volume.metadata);
+        const textures = texturesOf(instance, volume);
+        if (volume.geometry) {
+          const {grid = textures[0].grid, ...rest} = volume.geometry;
+          instance.check('container_set_geometry',
+              [container, place, memory.struct(geometryStruct, {grid, spacing: [1, 1, 1], ...rest})]);
+        }
+        const notes = (volume.groups ?? [volume]).flatMap((group) => group.textures);
+        textures.forEach((_, i) => {
+          note(METADATA_TEXTURE, texture, notes[i].metadata);
+          instance.check('container_set_largest_error', [container, texture++, bounds(i)]);
+        });
+      });
+      instance.check('writer_create', [0, container, out]);
+      return instance.word(out);
+    });
+    return writer;
+  }
+
+  /**
+   * Encodes the textures of volumes as a frame: {room: {color: array}}, or {color: array} of the only
+   * volume. Frames do not decrease.
+   */
+  add(frame, volumes, blocks = 'changed') {
+    const all = this.#encoders.size === 1 && !(volumes[this.#encoders.keys().next().value]?.constructor === Object)
+      ? {[this.#encoders.keys().next().value]: volumes} : volumes;
+    for (const [name, textures] of Object.entries(all)) {
+      const encoder = this.#encoders.get(name);
+      if (!encoder) throw new RangeError(`there is no volume "${name}": ${[...this.#encoders.keys()].join(', ')} are`);
+      encoder.encode(textures, blocks).forEach((packet) => this.addPacket(frame, packet));
+    }
+  }
+
+  /** Adds a packet that another encoder made; its texture is the one that the packet names. */
+  addPacket(frame, packet) {
+    this.#instance.with((memory) => this.#instance.check('writer_add',
+        [this.#handle, BigInt(frame), memory.put(packet), bytesOf(packet).length], {what: `frame ${frame}`}));
+  }
+
+  /** The bytes since the last call, for those that send the container while it grows. */
+  take() {
+    this.#instance.check('writer_flush', [this.#handle]);
+    return this.#bytes();
+  }
+
+  /** Ends the container: its bytes, or those since take(). */
+  finish() {
+    this.#instance.check('writer_finish', [this.#handle]);
+    return this.#bytes();
+  }
+
+  #bytes() {
+    const bytes = this.#instance.borrowed(Uint8Array, 'writer_bytes', this.#handle);
+    this.#instance.check('writer_take', [this.#handle]);
+    return bytes;
+  }
+}

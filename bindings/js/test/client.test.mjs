@@ -1,0 +1,118 @@
+// The client beside a real server: gi-server --listen-web, by the package ws; and what hostile bytes do.
+import assert from 'node:assert/strict';
+import {spawn} from 'node:child_process';
+import {existsSync, mkdtempSync, readFileSync, rmSync} from 'node:fs';
+import {tmpdir} from 'node:os';
+import {join} from 'node:path';
+import {after, before, test} from 'node:test';
+import {setTimeout} from 'node:timers/promises';
+
+import WebSocket from 'ws';
+
+import {open} from 'gicodec';
+import {Client, connect} from 'gicodec/client';
+
+import {bytes, randomWords} from './support.mjs';
+
+const PROGRAMS = process.env.GICODEC_PROGRAMS;  // folders of gi-server and gi-trace
+let folder, server, url, file;
+
+function run(program, ...options) {
+  return new Promise((resolve, reject) => {
+    const child = spawn(program, options, {stdio: ['ignore', 'pipe', 'pipe']});
+    let text = '';
+    for (const stream of [child.stdout, child.stderr]) stream.on('data', (data) => (text += data));
+    child.on('exit', (code) => (code === 0 ? resolve(text) : reject(new Error(`${program}: ${text}`))));
+  });
+}
+
+before(async () => {
+  folder = mkdtempSync(join(tmpdir(), 'gicodec-'));
+  file = join(folder, 'room.gic');
+  const [serverFolder, traceFolder] = PROGRAMS.split(':');
+  await run(join(traceFolder, 'gi-trace'), '--scene', 'tomb', '--grid', '4x2x4', '--frames', '6', '--fps', '3', '-o', file);
+  const ports = join(folder, 'ports');
+  server = spawn(join(serverFolder, 'gi-server'),
+      ['--play', file, '--loop', '--listen-web', '127.0.0.1:0', '--insecure-web', '--port-file', ports],
+      {stdio: ['ignore', 'ignore', 'pipe']});
+  let text = '';
+  server.stderr.on('data', (data) => (text += data));
+  for (const end = Date.now() + 30000; !existsSync(ports); await setTimeout(50)) {
+    assert.ok(server.exitCode === null && Date.now() < end, `gi-server: ${text}`);
+  }
+  url = `ws://127.0.0.1:${readFileSync(ports, 'utf8').trim()}`;
+});
+
+after(() => {
+  server?.kill();
+  rmSync(folder, {recursive: true, force: true});
+});
+
+test('a client holds what the server plays', async () => {
+  let updates = 0, serial = 0;
+  const shown = [];
+  const {client, closed, close} = await new Promise((resolve, reject) => {
+    const opening = connect(url, {WebSocket, onUpdate(client) {
+      const [room] = client.volumes;
+      const changed = room.changed(0, serial);
+      assert.ok(changed.every((block) => block < room.textures[0].blocks));
+      serial = client.state.serial;
+      shown.push(Buffer.from(bytes(room.texels(0))).toString('base64'));
+      if (++updates === 8) opening.then((made) => resolve(Object.assign(made, {close: () => made.close()})));
+    }});
+    opening.then((made) => made.closed.catch(reject), reject);
+  });
+  const [room] = client.volumes;
+  assert.equal(room.kind, 'probes');
+  assert.deepEqual(room.geometry.grid, [4, 2, 4]);
+  assert.equal(client.state.connected, true);
+  assert.ok(client.state.blocks > 0);
+  assert.deepEqual(room.read(0), room.texels(0).slice());
+  const player = await open(readFileSync(file));
+  const played = new Set();
+  for await (const _ of player) played.add(Buffer.from(bytes(await player.read(0))).toString('base64'));
+  for (const one of shown) assert.ok(played.has(one), 'a frame that the file does not have');
+  close();
+  assert.equal(await closed, '');
+});
+
+test('an AbortSignal ends a connection', async () => {
+  const stop = new AbortController();
+  const connection = await connect(url, {WebSocket, signal: stop.signal});
+  setTimeout(50).then(() => stop.abort());
+  await assert.rejects(connection.closed, {name: 'AbortError'});
+});
+
+test('it comes back after a lost connection', async () => {
+  const sockets = [];
+  class Counted extends WebSocket {
+    constructor(...options) {
+      super(...options);
+      sockets.push(this);
+    }
+  }
+  let resumed;
+  const done = new Promise((resolve) => (resumed = resolve));
+  const connection = await connect(url, {WebSocket: Counted, onUpdate(client) {
+    if (sockets.length === 1) sockets[0].terminate();
+    else if (client.state.resumed) resumed(true);
+  }});
+  assert.equal(await done, true);
+  connection.close();
+});
+
+test('a client without a transport', async () => {
+  const client = await Client.create({delivery: 'shared', token: 'x'});
+  assert.ok(client.hello().length > 0);
+  assert.deepEqual(client.volumes, []);
+  assert.throws(() => client.setViewpoint({eye: [0, 0, NaN], target: [0, 0, 0]}), {code: 'invalid_argument'});
+  assert.throws(() => client.subscribe(7, [1]), {code: 'unknown_volume'});
+  const words = randomWords(3);
+  for (let i = 0; i < 300; ++i) {
+    const hostile = await Client.create();
+    hostile.hello();
+    const message = Uint8Array.from({length: words.next().value % 90}, () => words.next().value);
+    if (i % 2) message.set([0x67, 0x69, 0x63, 0x73].slice(0, message.length));
+    assert.throws(() => hostile.receive(message), {name: 'GicodecError'});
+  }
+});

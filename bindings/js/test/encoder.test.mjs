@@ -1,0 +1,140 @@
+import assert from 'node:assert/strict';
+import {test} from 'node:test';
+
+import {Decoder, VolumeDecoder, open, peek} from 'gicodec';
+import {
+  Encoder, VolumeEncoder, Writer, ddgiIrradiance, ddgiVisibility, formats, layouts, mapTexture, volumeOfLayout,
+} from 'gicodec/encoder';
+
+import {bytes, randomBytes} from './support.mjs';
+
+test('every format round trips, all bits', async () => {
+  const names = await formats();
+  assert.ok(names.length > 50);
+  for (const [i, format] of names.entries()) {
+    const desc = await mapTexture([37, 21], format);
+    const encoder = await Encoder.create(desc, {preset: ['turbo', 'fast', 'strong'][i % 3]});
+    const decoder = await Decoder.create(desc);
+    const texels = new desc.ArrayType(randomBytes(desc.textureBytes, i).buffer);
+    for (let frame = 0; frame < 3; ++frame) {
+      if (frame > 0) bytes(texels)[frame * 17] ^= 0x5A;
+      const packet = encoder.encode(texels);
+      decoder.decode(packet);
+      const found = decoder.read();
+      assert.equal(found.constructor, desc.ArrayType);
+      assert.ok(bytes(found).equals(bytes(texels)), `${format}, frame ${frame}`);
+      assert.equal(decoder.changed().length, frame === 0 ? desc.blocks : 1);
+      assert.equal((await peek(packet)).type, frame === 0 ? 'keyframe' : 'delta');
+    }
+    assert.equal(decoder.sequence, 3);
+  }
+});
+
+test('all half codes, in light maps and volumes', async () => {
+  const codes = Uint16Array.from({length: 65536}, (_, i) => i);
+  for (const size of [[256, 256], [128, 64, 8], [65536]]) {
+    const desc = await mapTexture(size, 'R16_SFLOAT', [16, 16, size.length > 2 ? 4 : 1]);
+    const decoder = await Decoder.create(desc);
+    decoder.decode((await Encoder.create(desc)).encode(codes));
+    assert.deepEqual(decoder.read(new Uint16Array(65536)), codes);
+  }
+});
+
+test('a volume of probes, with guard bands', async () => {
+  const color = await ddgiIrradiance([3, 2, 4]), distance = await ddgiVisibility([3, 2, 4]);
+  const volume = {kind: 'probes', groups: [{bundled: true, textures: [
+    {name: 'color', ...color}, {name: 'vis', ...distance}]}]};
+  const encoder = await VolumeEncoder.create(volume), decoder = await VolumeDecoder.create(volume);
+  const textures = {color: new Uint32Array(randomBytes(color.textureBytes, 5).buffer),
+                    vis: new Uint16Array(randomBytes(distance.textureBytes, 6).buffer)};
+  decoder.decode(encoder.encode(textures));
+  for (const name of ['color', 'vis']) assert.deepEqual(decoder.read(name), textures[name]);
+  textures.color[0] ^= 1;
+  decoder.decode(encoder.encode(textures));
+  assert.deepEqual(decoder.read('color'), textures.color);
+  assert.deepEqual(decoder.changed('color'), Uint32Array.of(0));
+  const late = await VolumeDecoder.create(volume);
+  late.decode(encoder.snapshot());
+  assert.deepEqual(late.read('vis'), textures.vis);
+  assert.throws(() => encoder.encode({color: textures.color}), /"vis", which is missing/);
+});
+
+test('engines\' layouts', async () => {
+  const all = await layouts();
+  assert.ok(Object.keys(all).length > 10 && all.three);
+  for (const layout of Object.keys(all)) {
+    const volume = await volumeOfLayout(layout, [4, 4, 4]);
+    const encoder = await VolumeEncoder.create(volume), decoder = await VolumeDecoder.create(volume);
+    const textures = Object.fromEntries(encoder.textures.map((desc, i) =>
+      [desc.name, new Uint8Array(randomBytes(desc.textureBytes, i))]));
+    decoder.decode(encoder.encode(textures));
+    for (const {name} of encoder.textures) {
+      assert.equal(bytes(decoder.read(name)).length, textures[name].length, `${layout} ${name}`);
+    }
+  }
+});
+
+test('a container, with geometry and notes', async () => {
+  const color = await ddgiIrradiance([4, 4, 4], 'R16G16B16A16_SFLOAT');
+  const writer = await Writer.create({room: {
+    kind: 'probes', textures: [{name: 'color', ...color, metadata: {unit: 'lux'}}], metadata: {floor: '2'},
+    geometry: {origin: [0, 1.5, -0.1], spacing: [1, 2, 0.3333]}}},
+  {scene: 'villa', metadata: {made: 'here'}, preset: 'strong'});
+  const texels = new Uint16Array(randomBytes(color.textureBytes, 9).buffer);
+  const pieces = [];
+  for (let frame = 0; frame < 4; ++frame) {
+    texels[frame * 100] = 0x7E00 + frame;
+    writer.add(frame * 10, {color: texels});
+    pieces.push(writer.take());
+  }
+  pieces.push(writer.finish());
+  const player = await open(new Blob(pieces));
+  assert.equal(player.scene, 'villa');
+  assert.deepEqual(player.metadata, {made: 'here'});
+  const [{name, kind, metadata, geometry}] = player.volumes;
+  assert.deepEqual([name, kind, metadata], ['room', 'probes', {floor: '2'}]);
+  assert.deepEqual(geometry.grid, [4, 4, 4]);
+  assert.deepEqual(geometry.origin.map(Math.fround), [0, 1.5, -0.1].map(Math.fround));
+  assert.deepEqual(geometry.spacing.map(Math.fround), [1, 2, 0.3333].map(Math.fround));
+  assert.deepEqual(player.textures[0].metadata, {unit: 'lux'});
+  const frames = [];
+  for await (const frame of player) frames.push(frame);
+  assert.deepEqual(frames, [0, 10, 20, 30]);
+  assert.deepEqual(await player.read('color'), texels);
+  assert.throws(() => writer.add(50, {color: texels}), {code: 'out_of_order'});
+});
+
+test('bounded errors', async () => {
+  const desc = await mapTexture([64, 64], 'R32_SFLOAT');
+  const texels = Float32Array.from({length: 4096}, (_, i) => 1 + Math.sin(i / 50) / 2);
+  const exact = (await Encoder.create(desc)).encode(texels);
+  const lossy = (await Encoder.create(desc, {maxError: 0.01})).encode(texels);
+  assert.ok(lossy.length < exact.length / 2);
+  const decoder = await Decoder.create(desc);
+  decoder.decode(lossy);
+  decoder.read().forEach((value, i) => assert.ok(Math.abs(value - texels[i]) <= 0.01 * texels[i]));
+});
+
+test('wrong calls are named', async () => {
+  await assert.rejects(mapTexture([4, 4], 'R17_SFLOAT'), {code: 'unsupported_format', message: /R17_SFLOAT/});
+  await assert.rejects(volumeOfLayout('nobody', [1, 1, 1]), {code: 'invalid_name'});
+  const desc = await mapTexture([16, 16], 'R8_UNORM');
+  await assert.rejects(Encoder.create(desc, {preset: 'slow'}), {code: 'invalid_settings'});
+  await assert.rejects(Encoder.create(desc, {speed: 3}), /there is no speed/);
+  await assert.rejects(Encoder.create({...desc, tiling: 'spiral'}), /there is no tiling "spiral"/);
+  await assert.rejects(VolumeEncoder.create({kind: 'clouds', textures: []}), /there is no kind "clouds": .*probes/);
+  const encoder = await Encoder.create(desc);
+  assert.throws(() => encoder.encode(new Uint8Array(255)), /the texture has 256 bytes, the array 255/);
+  assert.throws(() => encoder.encode(new Uint8Array(256), [7]), {code: 'block_out_of_range'});
+  assert.throws(() => encoder.encode('text'), TypeError);
+  const decoder = await Decoder.create(desc);
+  assert.throws(() => decoder.decode(new Uint8Array(3)), {name: 'GicodecError'});
+});
+
+test('one without memory ends alone', async () => {
+  const small = await mapTexture([16, 16], 'R8_UNORM');
+  const other = await Encoder.create(small);
+  const large = await mapTexture([8192, 8192], 'R32G32B32A32_SFLOAT', [64, 64, 1]);
+  await assert.rejects(Encoder.create(large), {code: 'out_of_memory'});
+  assert.ok(other.encode(new Uint8Array(256)).length > 0);
+});

@@ -1,0 +1,39 @@
+// Compiles, and what must not compile does not.
+import {Decoder, GicodecError, open, peek, ready, useWorkers, type Player, type Texels} from 'gicodec';
+import {connect, type ClientVolume} from 'gicodec/client';
+import {Encoder, Writer, ddgiIrradiance, volumeOfLayout, type VolumeDesc} from 'gicodec/encoder';
+
+export async function play(file: File): Promise<Texels> {
+  await ready;
+  await useWorkers(2);
+  const player: Player = await open(file, {textures: ['color', 1], limits: {maxTotalBytes: 1 << 28}});
+  for await (const frame of player) console.log(frame.toFixed(), player.volumes[0]?.geometry?.origin);
+  const words: Uint32Array = await player.read('color', new Uint32Array(100));
+  // @ts-expect-error: a number alone
+  await player.seek('0');
+  return words.length > 0 ? words : player.read(0);
+}
+
+export async function write(texels: Uint16Array): Promise<Uint8Array> {
+  const color = await ddgiIrradiance([2, 2, 2], 'R16G16B16A16_SFLOAT');
+  const room: VolumeDesc = {kind: 'probes', textures: [{name: 'color', ...color}]};
+  const writer = await Writer.create({room: {...room, geometry: {origin: [0, 0, 0]}}}, {preset: 'strong'});
+  writer.add(0, {color: texels});
+  const encoder = await Encoder.create(color);
+  const packet = encoder.encode(texels, [1, 2, 3]);
+  const decoder = await Decoder.create(color);
+  decoder.decode(packet);
+  console.log((await peek(packet)).type === 'keyframe', (await volumeOfLayout('three', [4, 4, 4])).kind);
+  // @ts-expect-error: no such preset
+  encoder.setPreset('slow');
+  return writer.finish();
+}
+
+export async function follow(url: string, signal: AbortSignal): Promise<string> {
+  const {closed} = await connect(url, {signal, onUpdate: ({volumes: [room]}) => draw(room)});
+  return closed.catch((error: unknown) => (error instanceof GicodecError ? error.code : 'unknown'));
+}
+
+function draw(room: ClientVolume | undefined): void {
+  console.log(room?.texels('color').byteLength, room?.geometry.grid);
+}
