@@ -4,9 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <span>
+#include <utility>
 
 namespace gicodec::test {
 namespace {
@@ -51,6 +54,53 @@ TEST(CGolden, ContainersHaveTheirHashes) {
     at += found.size();
   }
   EXPECT_GT(containers, 40U);
+}
+
+/// The updates of a recorded session, of which the server's messages are given to a client.
+std::string session_lines(const std::string& name, const std::string& bytes) {
+  auto options = sized<gicodec_client_options>();
+  options.delivery =
+      name.starts_with("unicast") ? GICODEC_DELIVERY_UNICAST : GICODEC_DELIVERY_SHARED;
+  options.token = "token";
+  const auto client =
+      made<OwnedClient>([&](auto out) { return gicodec_client_create(&options, out); });
+  EXPECT_EQ(gicodec_client_hello(client.get()), GICODEC_OK);
+  std::string lines;
+  std::uint64_t serial = 0;
+  gicodec_status status = GICODEC_OK;
+  for (std::size_t at = 0; at < bytes.size();) {
+    const bool from_server = bytes[at] == 1;
+    std::uint32_t size = 0;
+    std::memcpy(&size, &bytes[at + 1], sizeof size);
+    const char* const message = &bytes[at + 5];
+    at += 5 + size;
+    if (!from_server) continue;
+    EXPECT_EQ(status, GICODEC_OK) << name;
+    status = gicodec_client_receive(client.get(), message, size);
+    auto state = sized<gicodec_client_state>();
+    EXPECT_EQ(gicodec_client_get_state(client.get(), &state), GICODEC_OK);
+    if (std::exchange(serial, state.serial) == state.serial) continue;
+    std::uint32_t volume = 0;
+    EXPECT_EQ(gicodec_client_volume(client.get(), 0, &volume, nullptr), GICODEC_OK);
+    for (std::uint32_t t = 0; t < 2; ++t) {
+      std::size_t texels_size = 0;
+      const auto* const texels = gicodec_client_texels(client.get(), volume, t, &texels_size);
+      lines +=
+          golden::line_of(name, state.update, t, std::as_bytes(std::span(texels, texels_size)));
+    }
+  }
+  EXPECT_EQ(status, GICODEC_END) << name;
+  return lines;
+}
+
+TEST(CGolden, SessionsHaveTheirHashes) {
+  const std::filesystem::path folder = GICODEC_SESSION_DIR;
+  std::string lines;
+  for (const char* name : {"shared_native.session", "shared_zstd.session", "unicast_native.session",
+                           "unicast_raw.session"}) {
+    lines += session_lines(name, read_file(folder / name));
+  }
+  EXPECT_EQ(lines, read_file(folder / "hashes.txt"));
 }
 
 TEST(CGolden, UnknownVersionsAreNamed) {

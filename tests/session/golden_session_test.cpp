@@ -1,4 +1,5 @@
 // Recorded sessions: what a client made of them once it must make of them for ever.
+#include "golden/hashes.h"
 #include "session/golden/session_golden.h"
 
 #include <gtest/gtest.h>
@@ -13,6 +14,16 @@ namespace {
 
 using namespace golden;
 using namespace test;
+
+/// The lines of hashes.txt about a session, as C, Python and JavaScript make them, too.
+std::string expected_lines(const std::string& name) {
+  std::ifstream file(std::string(GICODEC_SESSION_DIR) + "/hashes.txt");
+  std::string lines;
+  for (std::string line; std::getline(file, line);) {
+    if (line.starts_with(name + ' ')) lines += line + '\n';
+  }
+  return lines;
+}
 
 std::vector<Recorded> load(const std::string& name) {
   std::ifstream file(std::string(GICODEC_SESSION_DIR) + "/" + name, std::ios::binary);
@@ -42,6 +53,7 @@ TEST_P(GoldenSession, GivesTheTextures) {
   std::set<std::size_t> types;
   Status last = Status::ok;
   bool intra = false, snapshot = false;
+  std::string lines;
   for (const Recorded& recorded : load(name)) {
     const auto message = read_message(recorded.message);
     ASSERT_TRUE(message.ok());
@@ -65,10 +77,13 @@ TEST_P(GoldenSession, GivesTheTextures) {
         EXPECT_TRUE(std::ranges::equal(client->frame().volumes[0].textures[i].texels,
                                        std::as_const(expected).view().bytes))
             << name << " update " << update->update << " texture " << i;
+        lines +=
+            line_of(name, client->frame().update, i, client->frame().volumes[0].textures[i].texels);
       }
     }
   }
   EXPECT_EQ(last, Status::end);
+  EXPECT_EQ(lines, expected_lines(name));
   EXPECT_EQ(client->goodbye().reason, Reason::shutdown);
   EXPECT_GT(client->statistics().proofs, 0U);
   EXPECT_EQ(client->statistics().failed_proofs, 0U);

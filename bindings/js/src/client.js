@@ -3,7 +3,7 @@ import {placeOf, texturesOf} from './description.js';
 import {target} from './decoder.js';
 import {bytesOf} from './instance.js';
 import {
-  END, OK, clientOptions, clientState, geometry as geometryStruct, limits as limitsStruct, view, viewpoint,
+  END, OK, clientOptions, clientState, geometry as geometryStruct, limits as limitsStruct, viewpoint,
 } from './interface.js';
 
 const DELIVERIES = ['unicast', 'shared'];
@@ -53,15 +53,8 @@ export class ClientVolume {
     const place = placeOf(this.textures, texture);
     const out = target(this.textures[place], into);
     const instance = this.#instance;
-    const size = this.textures[place].textureBytes;
-    return instance.with((memory) => {
-      const at = memory.room(size);
-      if (after !== 0) instance.bytes(at, size).set(bytesOf(out).subarray(0, size));
-      instance.check('client_read',
-          [this.#handle, this.number, place, BigInt(after), memory.struct(view, {bytes: at, size})]);
-      bytesOf(out).set(instance.bytes(at, size));
-      return out;
-    });
+    return instance.into(out, this.textures[place].textureBytes, (at) =>
+      instance.check('client_read', [this.#handle, this.number, place, BigInt(after), at]));
   }
 
   /** The texels in the client's memory, not copied: valid until its next call. */

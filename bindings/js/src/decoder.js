@@ -3,7 +3,7 @@ import {complete, createVolume, placeOf, texturesOf, withDesc} from './descripti
 import {GicodecError} from './error.js';
 import {bytesOf} from './instance.js';
 import {
-  INVALID_ARGUMENT, decoderOptions, limits as limitsStruct, packetInfo, view,
+  INVALID_ARGUMENT, decoderOptions, limits as limitsStruct, packetInfo,
 } from './interface.js';
 
 const PACKET_TYPES = ['keyframe', 'delta', 'intra', 'snapshot', 'catch-up', 'intra catch-up'];
@@ -32,7 +32,6 @@ class Packets {
     this.instance = instance;
     this.handle = handle;
     this.textures = textures;
-    this.stages = new Map();
   }
 
   static options(memory, {limits, firstTexture = 0}) {
@@ -40,16 +39,11 @@ class Packets {
         {textureId: firstTexture, limits: limits && memory.struct(limitsStruct, limits)});
   }
 
-  /** Reads a texture by the library's call: read(view address) into memory that stays. */
+  /** Reads a texture by the library's call: read(address of a view). */
   read(place, into, read) {
     const desc = this.textures[place];
     const out = target(desc, into);
-    const {instance} = this;
-    if (!this.stages.has(place)) this.stages.set(place, instance.allocate(desc.textureBytes));
-    const stage = this.stages.get(place);
-    instance.with((memory) => read(memory.struct(view, {bytes: stage, size: desc.textureBytes})));
-    bytesOf(out).set(instance.bytes(stage, desc.textureBytes));
-    return out;
+    return this.instance.into(out, desc.textureBytes, read);
   }
 }
 

@@ -3,7 +3,7 @@ import {complete, createVolume, formatNumber, placeOf, readDesc, texturesOf, wit
 import {target, withTexels} from './decoder.js';
 import {bytesOf} from './instance.js';
 import {
-  BUFFER_TOO_SMALL, SELECT_ALL, SELECT_CHANGED, SELECT_LIST, constView, encoderOptions, textureDesc, view,
+  BUFFER_TOO_SMALL, SELECT_ALL, SELECT_CHANGED, SELECT_LIST, constView, encoderOptions, textureDesc,
 } from './interface.js';
 
 /** The struct of an encoder's options, and what it points to. */
@@ -95,14 +95,8 @@ export class Encoder {
   /** The texture as decoders hold it. */
   read(into) {
     const instance = this.#instance;
-    const out = target(this.desc, into);
-    const size = this.desc.textureBytes;
-    return instance.with((memory) => {
-      const bytes = memory.room(size);
-      instance.check('encoder_read', [this.#handle, memory.struct(view, {bytes, size})]);
-      bytesOf(out).set(instance.bytes(bytes, size));
-      return out;
-    });
+    return instance.into(target(this.desc, into), this.desc.textureBytes, (at) =>
+      instance.check('encoder_read', [this.#handle, at]));
   }
 
   /** The number of the last packet; 0 before the first. */

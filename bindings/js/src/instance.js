@@ -1,7 +1,7 @@
 // An instance of a WebAssembly module of the library, with memory of its own, and what lies in it.
 // Views of its memory are made anew after each call, which may move it.
 import {GicodecError} from './error.js';
-import {OK, OUT_OF_MEMORY, STATUS_NAMES} from './interface.js';
+import {OK, OUT_OF_MEMORY, STATUS_NAMES, view} from './interface.js';
 
 const decoder = new TextDecoder();
 const encoder = new TextEncoder();
@@ -111,6 +111,20 @@ export class Instance {
     } finally {
       if (!this.#ended) taken.forEach((at) => this.free(at));
     }
+  }
+
+  /**
+   * Calls body(address of a view) to write a texture of `size` bytes into an array of the caller's, which
+   * keeps what the library leaves alone.
+   */
+  into(out, size, body) {
+    const bytes = bytesOf(out).subarray(0, size);
+    return this.with((memory) => {
+      const at = memory.put(bytes);
+      body(memory.struct(view, {bytes: at, size}));
+      bytes.set(this.bytes(at, size));
+      return out;
+    });
   }
 
   /** Fills a struct: what `values` lacks is 0. */

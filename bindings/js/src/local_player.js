@@ -4,14 +4,13 @@ import {GicodecError} from './error.js';
 import {bytesOf} from './instance.js';
 import {
   END, OK, OUT_OF_MEMORY, TRUNCATED, UNKNOWN_KIND, UNSUPPORTED_VERSION,
-  limits as limitsStruct, playerOptions, textureDesc, view,
+  limits as limitsStruct, playerOptions, textureDesc,
 } from './interface.js';
 
 export class LocalPlayer {
   #instance;
   #player = 0;
   #arrived = false;  // all bytes have
-  #staged = new Map();  // by texture: where it lies as of the last frame that was read
   #played = false;
   #head = [];  // the first bytes, which name the version
 
@@ -22,6 +21,7 @@ export class LocalPlayer {
   /** Takes bytes of the container, in order. */
   append(chunk) {
     const bytes = bytesOf(chunk);
+    if (bytes.length === 0) return;
     const at = this.#instance.call('source_grow', bytes.length) >>> 0;
     if (at === 0) throw this.#instance.error(OUT_OF_MEMORY, 'the bytes of the container');
     this.#instance.bytes(at, bytes.length).set(bytes);
@@ -127,21 +127,11 @@ export class LocalPlayer {
   read(texture, into) {
     const {desc, place} = this.#texture(texture);
     const out = into ?? new desc.ArrayType(desc.textureBytes / desc.ArrayType.BYTES_PER_ELEMENT);
-    const bytes = bytesOf(out);
-    if (bytes.length < desc.textureBytes) {
-      throw new RangeError(`"${desc.name}" has ${desc.textureBytes} bytes, the array ${bytes.length}`);
+    if (out.byteLength < desc.textureBytes) {
+      throw new RangeError(`"${desc.name}" has ${desc.textureBytes} bytes, the array ${out.byteLength}`);
     }
-    const instance = this.#instance;
-    const stage = this.#stage(place, desc);
-    instance.with((memory) => instance.check(
-        'player_read', [this.#player, place, memory.struct(view, {bytes: stage, size: desc.textureBytes})]));
-    bytes.set(instance.bytes(stage, desc.textureBytes));
-    return out;
-  }
-
-  #stage(place, desc) {
-    if (!this.#staged.has(place)) this.#staged.set(place, this.#instance.allocate(desc.textureBytes));
-    return this.#staged.get(place);
+    return this.#instance.into(out, desc.textureBytes, (at) =>
+      this.#instance.check('player_read', [this.#player, place, at]));
   }
 
   #texture(texture) {

@@ -70,7 +70,9 @@ class Worker {
   }
 
   #take({request, result, error}) {
-    const {resolve, reject} = this.#waiting.get(request);
+    const waiting = this.#waiting.get(request);
+    if (!waiting) return;  // the answer came after the end
+    const {resolve, reject} = waiting;
     this.#waiting.delete(request);
     if (this.#waiting.size === 0) this.unref();
     if (!error) return resolve(result);

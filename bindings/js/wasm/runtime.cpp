@@ -58,8 +58,11 @@ std::uint8_t* gicodec_source_grow(std::size_t bytes) {
   return free;
 }
 
-/// What gicodec_player_open() takes.
-const gicodec_source* gicodec_source_arrived() { return &kSource; }
+/// What gicodec_player_open() takes, from its first byte on.
+const gicodec_source* gicodec_source_arrived() {
+  arrived.at = 0;
+  return &kSource;
+}
 
 }  // extern "C"
 

@@ -2,6 +2,7 @@
 
 import collections
 import pathlib
+import struct
 
 import pytest
 
@@ -42,6 +43,37 @@ def test_golden(name):
         # a file with a bad index (index_*) plays only front to back, as C does.
         assert lines == expected[:len(lines)]
         assert ends != [f"{name} ends 1"] or name.startswith("index_"), str(error)
+
+
+SESSIONS = GOLDEN.parent / "session" / "golden"
+
+
+def session_lines(name):
+    """The updates of a recorded session, of which the server's messages are given to a client."""
+    delivery = name.split("_")[0]
+    client = gicodec.Client(delivery=delivery, token="token")
+    client.hello()
+    data, at, lines, serial = (SESSIONS / name).read_bytes(), 0, [], 0
+    while at < len(data):
+        from_server, size = struct.unpack_from("<BI", data, at)
+        message, at = data[at + 5:at + 5 + size], at + 5 + size
+        if from_server != 1:
+            continue
+        client.receive(message)
+        state = client.state
+        if state["serial"] == serial:
+            continue
+        serial = state["serial"]
+        for place, texture in enumerate(client.volumes[0].textures):
+            hashed = hash_of(client.volumes[0].read(texture).tobytes())
+            lines.append(f"{name} {state['update']} {place} {hashed}")
+    assert client.state["reason"] == "the server ends"
+    return lines
+
+
+def test_sessions():
+    lines = [line for path in sorted(SESSIONS.glob("*.session")) for line in session_lines(path.name)]
+    assert lines == (SESSIONS / "hashes.txt").read_text().splitlines()
 
 
 def test_unknown_version_is_named():
