@@ -35,6 +35,9 @@ function(gicodec_kernels name)
     target_compile_options(${objects} PRIVATE ${${isa}_flags}
       # Checks of every element in the innermost loops; what goes in is checked before (HACKING.md).
       -U_GLIBCXX_ASSERTIONS)
+    if(NOT GICODEC_SMALL)
+      target_compile_options(${objects} PRIVATE $<$<CONFIG:MinSizeRel>:-O2>)
+    endif()
     if(GICODEC_SANITIZE)
       # Take compilers half of their time, to see less of the same than bounds and AddressSanitizer.
       target_compile_options(${objects} PRIVATE -fno-sanitize=object-size,null,pointer-overflow)

@@ -31,9 +31,12 @@ if (where === 'node') {
   for (const file of files) print(file, await measure(gicodec, readFileSync(file), Number(plays)));
 } else {
   const server = createServer(({url}, response) => {
-    const place = Number(url.slice(1));
-    response.setHeader('content-type', url === '/index.js' ? 'text/javascript' : url === '/' ? 'text/html' : 'application/octet-stream');
-    response.end(url === '/index.js' ? readFileSync(entry) : url === '/' ? '<!doctype html>' : readFileSync(files[place]));
+    const [type, read] = {
+      '/': ['text/html', () => '<!doctype html>'], '/index.js': ['text/javascript', () => readFileSync(entry)],
+    }[url] ?? ['application/octet-stream', () => readFileSync(files[Number(url.slice(1))])];
+    if (url === '/favicon.ico') return response.writeHead(404).end();
+    response.setHeader('content-type', type);
+    response.end(read());
   });
   await new Promise((started) => server.listen(0, '127.0.0.1', started));
   const puppeteer = createRequire(join(top, 'build/js/package.json'))('puppeteer-core');
