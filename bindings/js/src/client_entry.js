@@ -4,7 +4,7 @@ import {Connection} from './connection.js';
 import {Module} from './module.js';
 import texts from 'gicodec:module/client';
 
-const module = new Module(texts);
+const module = new Module('client', 'gicodec_client_hello', texts);
 
 export {GicodecError} from './error.js';
 export {simd, supported} from './module.js';

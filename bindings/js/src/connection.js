@@ -24,6 +24,10 @@ export class Connection {
 
   #connect() {
     const Socket = this.#options.WebSocket ?? globalThis.WebSocket;
+    if (typeof Socket !== 'function') {
+      throw new TypeError('this engine has no WebSocket: give one, e.g. that of the package ws, ' +
+                          'connect(url, {WebSocket})');
+    }
     const socket = new Socket(this.#url, 'gicodec');
     this.#socket = socket;
     socket.binaryType = 'arraybuffer';

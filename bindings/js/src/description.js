@@ -29,13 +29,19 @@ function numberOf(list, name, what) {
 export function formatNumber(instance, format) {
   if (typeof format === 'number') return format;
   const number = instance.with((memory) => instance.call('format_from_name', memory.text(format)));
-  if (number === 0) throw new GicodecError(UNSUPPORTED_FORMAT, `there is no format "${format}"`);
+  if (number === 0) {
+    throw new GicodecError(UNSUPPORTED_FORMAT, `there is no format "${format}"; formats have the names of ` +
+                           'VkFormat, e.g. R16G16B16A16_SFLOAT');
+  }
   return number;
 }
 
 /** Calls body(address) with the struct of a description. */
 export function withDesc(instance, desc, body) {
   const {format, components = [], name, ...fields} = desc;
+  if (!fields.grid || !fields.block || (format === undefined && components.length === 0)) {
+    throw new TypeError('a description of a texture has a grid, a block, and a format or components');
+  }
   for (const derived of ['ArrayType', 'components', 'volume', 'largestError', 'metadata',
                          ...Object.keys(textureInfo.fields)]) {
     delete fields[derived];
@@ -98,6 +104,9 @@ export function createVolume(instance, {kind, groups, textures}) {
     for (const group of groups ?? [{bundled: false, textures}]) {
       instance.check('volume_desc_add_group', [volume, group.bundled ? 1 : 0]);
       for (const texture of group.textures) {
+        if (typeof texture.name !== 'string') {
+          throw new TypeError('each texture of a volume has a name: {name: "color", ...description}');
+        }
         withDesc(instance, texture, (at) => instance.check(
             'volume_desc_add_texture', [volume, memory.text(texture.name), at], {what: texture.name}));
       }

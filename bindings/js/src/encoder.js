@@ -8,6 +8,9 @@ import {
 
 /** The struct of an encoder's options, and what it points to. */
 function withOptions(memory, {preset, maxError = 0, gop, firstTexture = 0, ...rest}) {
+  if (preset !== undefined && !PRESETS.includes(preset)) {
+    throw new RangeError(`there is no preset "${preset}": ${PRESETS.join(', ')} are`);
+  }
   const list = Array.isArray(maxError) || ArrayBuffer.isView(maxError);
   return memory.struct(encoderOptions, {
     ...rest, textureId: firstTexture, preset: preset && memory.text(preset),
@@ -16,10 +19,15 @@ function withOptions(memory, {preset, maxError = 0, gop, firstTexture = 0, ...re
   });
 }
 
+const PRESETS = ['turbo', 'fast', 'strong'];
+
 /** What the library takes for "changed", "all" or a list of blocks. */
 function selection(memory, blocks) {
   if (blocks === 'changed') return [SELECT_CHANGED, 0, 0];
   if (blocks === 'all') return [SELECT_ALL, 0, 0];
+  if (typeof blocks === 'string' || typeof blocks?.[Symbol.iterator] !== 'function') {
+    throw new TypeError(`blocks are "changed", "all" or a list of numbers, not ${blocks}`);
+  }
   const list = Uint32Array.from(blocks);
   return [SELECT_LIST, memory.put(list), list.length];
 }

@@ -4,7 +4,7 @@ import {Module} from './module.js';
 import * as writer from './writer.js';
 import texts from 'gicodec:module/encoder';
 
-const module = new Module(texts);
+const module = new Module('encoder', 'gicodec_encoder_encode', texts);
 
 export {GicodecError} from './error.js';
 export {simd, supported} from './module.js';

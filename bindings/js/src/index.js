@@ -4,7 +4,7 @@ import {Module} from './module.js';
 import * as player from './player.js';
 import texts from 'gicodec:module/decoder';
 
-const module = new Module(texts);
+const module = new Module('decoder', 'gicodec_player_next', texts);
 
 export {GicodecError} from './error.js';
 export {simd, supported} from './module.js';

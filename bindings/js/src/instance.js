@@ -209,6 +209,14 @@ export class Instance {
   }
 }
 
+/** A frame's number as the library takes it. */
+export function frameNumber(frame) {
+  if (!Number.isSafeInteger(frame) || frame < 0) {
+    throw new RangeError(`a frame has a number from 0 on, not ${frame}`);
+  }
+  return BigInt(frame);
+}
+
 /** The bytes of an ArrayBuffer or a view of one, without a copy. */
 export function bytesOf(array) {
   if (array instanceof Uint8Array) return array;

@@ -1,7 +1,7 @@
 // A player on the thread that it is called on: the page's, or a worker's.
 import {placeOf, readDesc} from './description.js';
 import {GicodecError} from './error.js';
-import {bytesOf} from './instance.js';
+import {bytesOf, frameNumber} from './instance.js';
 import {
   END, OK, OUT_OF_MEMORY, TRUNCATED, UNKNOWN_KIND, UNSUPPORTED_VERSION,
   limits as limitsStruct, playerOptions, textureDesc,
@@ -12,6 +12,7 @@ export class LocalPlayer {
   #player = 0;
   #arrived = false;  // all bytes have
   #played = false;
+  #selected = null;  // the textures that are played; null: all
   #head = [];  // the first bytes, which name the version
 
   constructor(instance) {
@@ -88,9 +89,11 @@ export class LocalPlayer {
   }
 
   #select(textures) {
+    if (!Array.isArray(textures)) throw new TypeError('textures is a list of names or numbers');
     const places = textures.map((one) => placeOf(this.textures, one));
     this.#instance.with((memory) => this.#instance.check(
         'player_select', [this.#player, memory.put(new Uint32Array(places)), places.length]));
+    this.#selected = new Set(places);
   }
 
   /** Applies the next frame and returns its number; null at the end, undefined: more bytes needed. */
@@ -98,7 +101,7 @@ export class LocalPlayer {
     const status = this.#instance.call('player_next', this.#player);
     if (status === END) return null;
     if (status === TRUNCATED && !this.#arrived) return undefined;
-    if (status !== OK) throw this.#instance.error(status, `frame ${this.#played ? this.frame() : 0} or behind`);
+    if (status !== OK) throw this.#instance.error(status, this.#played ? `behind frame ${this.frame()}` : 'the first frame');
     this.#played = true;
     return this.frame();
   }
@@ -109,7 +112,7 @@ export class LocalPlayer {
   }
 
   seek(frame) {
-    this.#instance.check('player_seek', [this.#player, BigInt(frame)], {what: `frame ${frame}`});
+    this.#instance.check('player_seek', [this.#player, frameNumber(frame)], {what: `frame ${frame}`});
   }
 
   /** The frames that can be sought: those that have arrived. */
@@ -140,6 +143,10 @@ export class LocalPlayer {
     if (desc.grid === undefined) {
       throw new GicodecError(UNKNOWN_KIND, `"${desc.name}" is of a kind that this version does not know`);
     }
+    if (this.#selected && !this.#selected.has(place)) {
+      throw new RangeError(`"${desc.name}" is not among the textures that open() was told to play`);
+    }
+    if (!this.#played) throw new RangeError('nothing is played yet: call next() before');
     return {desc, place};
   }
 

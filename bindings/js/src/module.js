@@ -15,11 +15,19 @@ export const simd = supported && WebAssembly.validate(VECTORS);
 
 /** One module, compiled when it is first needed. */
 export class Module {
+  #name;
+  #call;
   #texts;
   #compiled = null;
 
-  /** @param {{simd: string, scalar: string}} texts a character for each byte */
-  constructor(texts) {
+  /**
+   * @param {string} name of its file
+   * @param {string} call one of its exports that no other has
+   * @param {{simd: string, scalar: string}} texts a character for each byte
+   */
+  constructor(name, call, texts) {
+    this.#name = name;
+    this.#call = call;
     this.#texts = texts;
   }
 
@@ -35,6 +43,10 @@ export class Module {
         return given.arrayBuffer().then((bytes) => WebAssembly.compile(bytes));
       }
       return WebAssembly.compile(given);
+    });
+    this.#compiled = this.#compiled.then((module) => {
+      if (WebAssembly.Module.exports(module).some(({name}) => name === this.#call)) return module;
+      throw new TypeError(`these are not the bytes of ${this.#name}.wasm or ${this.#name}-scalar.wasm`);
     });
     return this.#compiled.then(() => undefined);
   }

@@ -42,10 +42,12 @@ export class Player {
     let source = given;
     if (typeof source === 'string' || source instanceof URL || source == null) {
       throw new TypeError(`a container is a Response, bytes, a Blob or a stream, not ${source}: ` +
-                          'open(fetch(url)) takes it from the net');
+                          'open(fetch(url)) takes it from the net, open(readFile(path)) from a disk');
     }
     if (typeof Response !== 'undefined' && source instanceof Response) {
-      if (!source.ok) throw new TypeError(`${source.url}: ${source.status} ${source.statusText}`);
+      if (!source.ok) {
+        throw new TypeError(`the server answers ${source.status} ${source.statusText} for ${source.url || 'the container'}`);
+      }
       this.#owned = true;
       source = source.body ?? new Uint8Array();
     } else if (typeof Blob !== 'undefined' && source instanceof Blob) {

@@ -1,7 +1,7 @@
 // Containers, written frame by frame: with the encoders that make their packets.
 import {createVolume, texturesOf} from './description.js';
 import {VolumeEncoder} from './encoder.js';
-import {bytesOf} from './instance.js';
+import {bytesOf, frameNumber} from './instance.js';
 import {
   METADATA_CONTAINER, METADATA_TEXTURE, METADATA_VOLUME, geometry as geometryStruct,
 } from './interface.js';
@@ -61,6 +61,7 @@ export class Writer {
    * volume. Frames do not decrease.
    */
   add(frame, volumes, blocks = 'changed') {
+    frameNumber(frame);  // before an encoder goes on
     const all = this.#encoders.size === 1 && !(volumes[this.#encoders.keys().next().value]?.constructor === Object)
       ? {[this.#encoders.keys().next().value]: volumes} : volumes;
     for (const [name, textures] of Object.entries(all)) {
@@ -73,7 +74,7 @@ export class Writer {
   /** Adds a packet that another encoder made; its texture is the one that the packet names. */
   addPacket(frame, packet) {
     this.#instance.with((memory) => this.#instance.check('writer_add',
-        [this.#handle, BigInt(frame), memory.put(packet), bytesOf(packet).length], {what: `frame ${frame}`}));
+        [this.#handle, frameNumber(frame), memory.put(packet), bytesOf(packet).length], {what: `frame ${frame}`}));
   }
 
   /** The bytes since the last call, for those that send the container while it grows. */

@@ -78,6 +78,8 @@ test('some textures alone', async () => {
   const all = await open(golden(FILE));
   await all.next();
   assert.deepEqual(await player.read(1), await all.read(1));
+  await assert.rejects(player.read(0), /is not among the textures/);
+  await assert.rejects((await open(golden(FILE))).read(0), /call next\(\) before/);
   await assert.rejects(open(golden(FILE), {textures: ['nobody']}), /there is no texture "nobody": there are/);
 });
 

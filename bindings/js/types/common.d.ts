@@ -15,7 +15,7 @@ export const ready: PromiseLike<void>;
 /** Takes the bytes of the entry's .wasm file (simd) or -scalar.wasm from the caller, before any other call. */
 export function useModule(source: ModuleSource | PromiseLike<ModuleSource>): Promise<void>;
 
-export type ModuleSource = Response | BufferSource | WebAssembly.Module;
+export type ModuleSource = Response | Bytes;
 export type Bytes = ArrayBuffer | ArrayBufferView;
 /** Components as they are where a format's are all whole and alike, else words of its records. */
 export type Texels = Uint8Array | Uint16Array | Uint32Array | Int8Array | Int16Array | Int32Array | Float32Array;
@@ -68,7 +68,7 @@ export interface Texture extends TextureDesc {
   ArrayType: {new(length: number): Texels; readonly BYTES_PER_ELEMENT: number};
 }
 
-export type Kind = 'probes' | 'irradiance vectors' | 'textures' | 'irradiance maps' | 'photons' | 'AO points' |
+export type Kind = 'probes' | 'irradiance_vectors' | 'textures' | 'irradiance_maps' | 'photons' | 'ao_points' |
   'voxels' | (string & {});
 export interface NamedTexture extends TextureDesc { name: string; metadata?: Record<string, string> }
 export interface TextureGroup { bundled?: boolean; textures: NamedTexture[] }

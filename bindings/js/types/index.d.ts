@@ -46,7 +46,7 @@ export interface Player extends AsyncIterable<number> {
   /** The numbers of the frames that can be sought; of a stream: those that have arrived. */
   frames(): Promise<number[]>;
   /**
-   * A texture as of the last frame, guard bands included, bit by bit. With `into` in that array, which a
+   * A texture as of the last frame (after the first next()), guard bands included, bit by bit. With `into` in that array, which a
    * worker returns as another one over the same memory: go on with what this resolves to.
    */
   read(texture: string | number): Promise<Texels>;
