@@ -86,7 +86,6 @@ writeFileSync(join(out, 'package.json'), `${JSON.stringify({...about, version}, 
 copyFileSync(join(here, 'README.md'), join(out, 'README.md'));
 copyFileSync(join(top, 'LICENSE'), join(out, 'LICENSE'));
 copyFileSync(join(here, 'THIRD_PARTY'), join(out, 'THIRD_PARTY'));
-
 copyFileSync(join(here, 'types/common.d.ts'), join(out, 'common.d.ts'));
 
 const sizes = [];

@@ -13,7 +13,7 @@ sys.path.insert(0, str(HERE.parent))
 
 import interface  # noqa: E402
 
-# Sizes, and the methods of DataView ("ptr" and the like are uint32 here).
+# Sizes, and the methods of DataView.
 PLAIN = {
     "char": (1, "Uint8"), "uint8_t": (1, "Uint8"), "uint16_t": (2, "Uint16"),
     "uint32_t": (4, "Uint32"), "int32_t": (4, "Int32"), "gicodec_status": (4, "Int32"),
@@ -23,17 +23,16 @@ PLAIN = {
 POINTER = (4, "Uint32")
 
 DESCRIPTION = r"gicodec_(status_text|version_text|format_(from_name|name)|kind_name|" \
-    r"texture_desc_(complete|info|origin)|volume_desc_(create|add_group|add_texture|check|destroy))"
+    r"texture_desc_(complete|info)|volume_desc_(create|add_group|add_texture|check|destroy))"
 DECODER = rf"{DESCRIPTION}|gicodec_(player_(open|container|select|set_growing|next|seek|frame|frames|read|" \
-    r"changed)|container_(json|texture|version)|" \
+    r"changed)|container_(json|version)|" \
     r"decoder_(create|decode|set_presence|read|changed|received|sequence)|" \
     r"volume_decoder_(create|decode|read|changed)|packet_peek|backend_name)"
 MODULES = {
     "decoder": DECODER,
     "client": rf"{DESCRIPTION}|gicodec_(client_(?!cancel|destroy)\w+|reason_text|volume_desc_json)",
     "encoder": rf"{DESCRIPTION}|gicodec_(ddgi_\w+|map_texture|format_(count|at)|layout_\w+|"
-    r"photon_volume|voxel_volume|ao_point_volume|irradiance_vector_volume|"
-    r"volume_desc_(from_layout|json)|encoder_(?!destroy)\w+|volume_encoder_(?!destroy)\w+|"
+    r"volume_desc_(from_layout|json)|encoder_(?!destroy)\w+|volume_encoder_(?!destroy|read|set_active)\w+|"
     r"container_(create|add_volume|set_\w+|add_metadata)|writer_(?!destroy)\w+)",
 }
 RUNTIME = ("_initialize", "malloc", "free")

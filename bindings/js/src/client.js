@@ -1,6 +1,5 @@
 // The streaming protocol's client, without a transport: messages are bytes.
-import {placeOf, texturesOf} from './description.js';
-import {target} from './decoder.js';
+import {placeOf, readTexture, texturesOf} from './description.js';
 import {bytesOf} from './instance.js';
 import {
   END, OK, clientOptions, clientState, geometry as geometryStruct, limits as limitsStruct, viewpoint,
@@ -21,16 +20,9 @@ export class ClientVolume {
     /** A number that no other volume of this client ever has. */
     this.id = id;
     this.name = instance.text(instance.call('client_volume_name', handle, number));
-    const desc = instance.with((memory) => {
-      const out = memory.room(4);
-      instance.check('client_volume_desc', [handle, number, out]);
-      const volume = instance.word(out);
-      try {
-        return instance.json('volume_desc_json', volume);
-      } finally {
-        instance.call('volume_desc_destroy', volume);
-      }
-    });
+    const volume = instance.made('client_volume_desc', [handle, number]);
+    const desc = instance.json('volume_desc_json', volume);
+    instance.call('volume_desc_destroy', volume);
     this.kind = desc.kind;
     this.groups = desc.groups;
     this.textures = texturesOf(instance, desc);
@@ -51,10 +43,8 @@ export class ClientVolume {
    */
   read(texture, into, after = 0) {
     const place = placeOf(this.textures, texture);
-    const out = target(this.textures[place], into);
-    const instance = this.#instance;
-    return instance.into(out, this.textures[place].textureBytes, (at) =>
-      instance.check('client_read', [this.#handle, this.number, place, BigInt(after), at]));
+    return readTexture(this.#instance, this.textures[place], into, (at) =>
+      this.#instance.check('client_read', [this.#handle, this.number, place, BigInt(after), at]));
   }
 
   /** The texels in the client's memory, not copied: valid until its next call. */
@@ -71,13 +61,8 @@ export class ClientVolume {
 
   /** The blocks that were replaced after the update of that serial, ascending. */
   changed(texture, after = 0) {
-    const instance = this.#instance;
-    return instance.with((memory) => {
-      const at = memory.room(4), count = memory.room(4);
-      instance.check('client_changed', [
-        this.#handle, this.number, placeOf(this.textures, texture), BigInt(after), at, count]);
-      return instance.array(Uint32Array, instance.word(at), instance.word(count)).slice();
-    });
+    return this.#instance.listed(Uint32Array, 'client_changed', [
+      this.#handle, this.number, placeOf(this.textures, texture), BigInt(after)]);
   }
 }
 
@@ -93,12 +78,10 @@ export class Client {
     const client = new Client();
     client.#instance = instance;
     client.#handle = instance.with((memory) => {
-      const out = memory.room(4);
       const struct = memory.struct(clientOptions, {
         ...options, delivery: DELIVERIES.indexOf(delivery), token: memory.text(token),
         limits: limits && memory.struct(limitsStruct, limits)});
-      instance.check('client_create', [struct, out]);
-      return instance.word(out);
+      return instance.made('client_create', [struct]);
     });
     return client;
   }

@@ -9,7 +9,7 @@ const module = new Module('client', 'gicodec_client_hello', texts);
 export {GicodecError} from './error.js';
 export {simd, supported} from './module.js';
 
-export const ready = {then: (...handlers) => module.compiled().then(() => undefined).then(...handlers)};
+export const {ready} = module;
 export const useModule = (source) => module.use(source);
 
 export const Client = {create: (options) => client.Client.create(module, options)};

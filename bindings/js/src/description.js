@@ -1,8 +1,7 @@
 // Descriptions of textures and volumes: plain objects, as in the library's JSON, and structs.
 import {GicodecError} from './error.js';
-import {
-  INVALID_NAME, UNSUPPORTED_FORMAT, textureDesc, textureInfo,
-} from './interface.js';
+import {bytesOf} from './instance.js';
+import {INVALID_NAME, UNSUPPORTED_FORMAT, textureDesc, textureInfo} from './interface.js';
 
 const NAMES = {
   space: ['grid', 'pool'],
@@ -98,9 +97,7 @@ function arrayType({components, recordBytes}) {
 /** The handle of a volume: {kind, groups: [{bundled, textures: [{name, ...}]}]}, or {kind, textures}. */
 export function createVolume(instance, {kind, groups, textures}) {
   return instance.with((memory) => {
-    const out = memory.room(4);
-    instance.check('volume_desc_create', [kindNumber(instance, kind), out]);
-    const volume = instance.word(out);
+    const volume = instance.made('volume_desc_create', [kindNumber(instance, kind)]);
     for (const group of groups ?? [{bundled: false, textures}]) {
       instance.check('volume_desc_add_group', [volume, group.bundled ? 1 : 0]);
       for (const texture of group.textures) {
@@ -143,12 +140,21 @@ export function placeOf(textures, texture) {
   return place;
 }
 
-/** The origin of a block in memory: column, row, slice, in records, and block. */
-export function blockOrigin(instance, desc, block) {
-  return withDesc(instance, desc, (at) => instance.with((memory) => {
-    const out = memory.room(32);
-    instance.check('texture_desc_origin', [at, block, out]);
-    return Array.from(instance.array(BigUint64Array, out, 4), Number);
-  }));
+/** Reads a texture into an array of the caller's or a new one, by a call that takes the address of a view. */
+export function readTexture(instance, desc, into, read) {
+  const out = into ?? new desc.ArrayType(desc.textureBytes / desc.ArrayType.BYTES_PER_ELEMENT);
+  checkSize(desc, out);
+  return instance.into(out, desc.textureBytes, read);
 }
 
+/** The fields of a view of the caller's texture, copied. */
+export function texelsOf(memory, desc, array) {
+  const bytes = bytesOf(array);
+  checkSize(desc, bytes);
+  return {bytes: memory.put(bytes), size: bytes.length};
+}
+
+function checkSize({name, textureBytes}, {byteLength}) {
+  if (byteLength >= textureBytes) return;
+  throw new RangeError(`${name ? `"${name}"` : 'the texture'} has ${textureBytes} bytes, the array ${byteLength}`);
+}

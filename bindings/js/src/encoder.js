@@ -1,6 +1,7 @@
 // Encoders: of one texture, and of all of a volume.
-import {complete, createVolume, formatNumber, placeOf, readDesc, texturesOf, withDesc} from './description.js';
-import {target, withTexels} from './decoder.js';
+import {
+  complete, createVolume, formatNumber, placeOf, readDesc, readTexture, texelsOf, texturesOf, withDesc,
+} from './description.js';
 import {bytesOf} from './instance.js';
 import {
   BUFFER_TOO_SMALL, SELECT_ALL, SELECT_CHANGED, SELECT_LIST, constView, encoderOptions, textureDesc,
@@ -43,11 +44,8 @@ export class Encoder {
     const encoder = new Encoder();
     encoder.#instance = instance;
     encoder.desc = complete(instance, desc);
-    encoder.#handle = withDesc(instance, desc, (at) => instance.with((memory) => {
-      const out = memory.room(4);
-      instance.check('encoder_create', [at, withOptions(memory, options), out]);
-      return instance.word(out);
-    }));
+    encoder.#handle = withDesc(instance, desc, (at) => instance.with((memory) =>
+      instance.made('encoder_create', [at, withOptions(memory, options)])));
     return encoder;
   }
 
@@ -55,7 +53,7 @@ export class Encoder {
   encode(texture, blocks = 'changed') {
     const instance = this.#instance;
     return instance.with((memory) => {
-      const texels = memory.struct(constView, withTexels(instance, memory, this.desc, texture));
+      const texels = memory.struct(constView, texelsOf(memory, this.desc, texture));
       const chosen = selection(memory, blocks);
       return this.#packet(memory, (out, capacity, size) => instance.check(
           'encoder_encode', [this.#handle, texels, ...chosen, out, capacity, size], {also: [BUFFER_TOO_SMALL]}));
@@ -102,9 +100,8 @@ export class Encoder {
 
   /** The texture as decoders hold it. */
   read(into) {
-    const instance = this.#instance;
-    return instance.into(target(this.desc, into), this.desc.textureBytes, (at) =>
-      instance.check('encoder_read', [this.#handle, at]));
+    return readTexture(this.#instance, this.desc, into, (at) =>
+      this.#instance.check('encoder_read', [this.#handle, at]));
   }
 
   /** The number of the last packet; 0 before the first. */
@@ -124,12 +121,8 @@ export class VolumeEncoder {
     const encoder = new VolumeEncoder();
     encoder.#instance = instance;
     encoder.textures = texturesOf(instance, volume);
-    encoder.#handle = instance.with((memory) => {
-      const out = memory.room(4);
-      instance.check('volume_encoder_create',
-          [createVolume(instance, volume), withOptions(memory, options), out]);
-      return instance.word(out);
-    });
+    encoder.#handle = instance.with((memory) => instance.made(
+        'volume_encoder_create', [createVolume(instance, volume), withOptions(memory, options)]));
     return encoder;
   }
 
@@ -139,7 +132,7 @@ export class VolumeEncoder {
     instance.with((memory) => {
       const views = memory.list(constView, this.textures.map((desc) => {
         if (!textures[desc.name]) throw new TypeError(`the volume has a texture "${desc.name}", which is missing`);
-        return withTexels(instance, memory, desc, textures[desc.name]);
+        return texelsOf(memory, desc, textures[desc.name]);
       }));
       instance.check('volume_encoder_encode',
           [this.#handle, views, this.textures.length, ...selection(memory, blocks)]);
@@ -184,10 +177,8 @@ export async function described(module, call, numbers, format) {
 export async function volumeOf(module, call, values) {
   const instance = await module.create();
   return instance.with((memory) => {
-    const out = memory.room(4);
     const given = values.map((value) => (typeof value === 'string' ? memory.text(value) : value));
-    instance.check(call, [...given, out], {what: String(values[0])});
-    return instance.json('volume_desc_json', instance.word(out));
+    return instance.json('volume_desc_json', instance.made(call, given, {what: String(values[0])}));
   });
 }
 

@@ -9,7 +9,7 @@ const module = new Module('encoder', 'gicodec_encoder_encode', texts);
 export {GicodecError} from './error.js';
 export {simd, supported} from './module.js';
 
-export const ready = {then: (...handlers) => module.compiled().then(() => undefined).then(...handlers)};
+export const {ready} = module;
 export const useModule = (source) => module.use(source);
 
 export const Encoder = {create: (desc, options) => encoder.Encoder.create(module, desc, options)};

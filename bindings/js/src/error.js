@@ -1,5 +1,10 @@
 import {STATUS_NAMES} from './interface.js';
 
+/** Throws for a response that does not bring what was asked for. */
+export function checkResponse({ok, status, statusText, url}) {
+  if (!ok) throw new TypeError(`the server answers ${status} ${statusText} for ${url || 'the request'}`);
+}
+
 /** What a call of the library, or damaged bytes, lead to. */
 export class GicodecError extends Error {
   /**

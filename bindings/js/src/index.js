@@ -10,7 +10,7 @@ export {GicodecError} from './error.js';
 export {simd, supported} from './module.js';
 
 /** Resolves once the module is compiled. Every call waits for it by itself. */
-export const ready = {then: (...handlers) => module.compiled().then(() => undefined).then(...handlers)};
+export const {ready} = module;
 /** Takes the bytes of decoder.wasm (simd) or decoder-scalar.wasm from the caller, before any other call. */
 export const useModule = (source) => module.use(source);
 /** Decodes containers in that many workers from now on; 0: on the caller's thread. */

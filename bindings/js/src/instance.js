@@ -49,6 +49,24 @@ export class Instance {
     return status;
   }
 
+  /** The handle that check(name, [...values, &handle]) stores. */
+  made(name, values, options) {
+    return this.with((memory) => {
+      const out = memory.room(4);
+      this.check(name, [...values, out], options);
+      return this.word(out);
+    });
+  }
+
+  /** A copy of the array that check(name, [...values, &array, &count]) stores. */
+  listed(Type, name, values, options) {
+    return this.with((memory) => {
+      const at = memory.room(4), count = memory.room(4);
+      this.check(name, [...values, at, count], options);
+      return this.word(count) === 0 ? new Type() : this.array(Type, this.word(at), this.word(count)).slice();
+    });
+  }
+
   error(status, what = '') {
     const text = this.text(this.call('status_text', status)) || STATUS_NAMES[status];
     return new GicodecError(status, what ? `${what}: ${text}` : text);

@@ -1,10 +1,10 @@
 // A player on the thread that it is called on: the page's, or a worker's.
-import {placeOf, readDesc} from './description.js';
+import {complete, placeOf, readTexture} from './description.js';
 import {GicodecError} from './error.js';
 import {bytesOf, frameNumber} from './instance.js';
 import {
   END, OK, OUT_OF_MEMORY, TRUNCATED, UNKNOWN_KIND, UNSUPPORTED_VERSION,
-  limits as limitsStruct, playerOptions, textureDesc,
+  limits as limitsStruct, playerOptions,
 } from './interface.js';
 
 export class LocalPlayer {
@@ -75,13 +75,9 @@ export class LocalPlayer {
     return {
       scene: scene.name, metadata: named(metadata),
       volumes: volumes.map((one) => ({...one, metadata: named(one.metadata)})),
-      textures: textures.map((one, place) => {
+      textures: textures.map((one) => {
         const known = one.grid !== undefined;  // of a kind that the library knows
-        const desc = known ? instance.with((memory) => {
-          const at = memory.struct(textureDesc);
-          instance.check('container_texture', [container, place, at, 0]);
-          return readDesc(instance, at);
-        }) : {};
+        const desc = known ? complete(instance, one) : {};
         return {...desc, name: one.name, volume: one.volume, largestError: one.largestError ?? Infinity,
                 metadata: named(one.metadata)};
       }),
@@ -117,23 +113,14 @@ export class LocalPlayer {
 
   /** The frames that can be sought: those that have arrived. */
   frames() {
-    const instance = this.#instance;
-    return instance.with((memory) => {
-      const at = memory.room(4), count = memory.room(4);
-      instance.check('player_frames', [this.#player, at, count], {what: 'the index of the frames'});
-      const numbers = instance.word(count);
-      return numbers ? Array.from(instance.array(BigUint64Array, instance.word(at), numbers), Number) : [];
-    });
+    return Array.from(this.#instance.listed(
+        BigUint64Array, 'player_frames', [this.#player], {what: 'the index of the frames'}), Number);
   }
 
   /** A texture as of this frame, guard bands included: a typed array, `into` if given. */
   read(texture, into) {
     const {desc, place} = this.#texture(texture);
-    const out = into ?? new desc.ArrayType(desc.textureBytes / desc.ArrayType.BYTES_PER_ELEMENT);
-    if (out.byteLength < desc.textureBytes) {
-      throw new RangeError(`"${desc.name}" has ${desc.textureBytes} bytes, the array ${out.byteLength}`);
-    }
-    return this.#instance.into(out, desc.textureBytes, (at) =>
+    return readTexture(this.#instance, desc, into, (at) =>
       this.#instance.check('player_read', [this.#player, place, at]));
   }
 

@@ -1,5 +1,5 @@
 // The modules of the package: the text in which one is embedded, or bytes that the caller serves.
-import {GicodecError} from './error.js';
+import {GicodecError, checkResponse} from './error.js';
 import {Instance} from './instance.js';
 import {UNSUPPORTED_FEATURE} from './interface.js';
 
@@ -39,7 +39,7 @@ export class Module {
     this.#compiled = Promise.resolve(source).then((given) => {
       if (given instanceof WebAssembly.Module) return given;
       if (typeof Response !== 'undefined' && given instanceof Response) {
-        if (!given.ok) throw new TypeError(`${given.url}: ${given.status} ${given.statusText}`);
+        checkResponse(given);
         return given.arrayBuffer().then((bytes) => WebAssembly.compile(bytes));
       }
       return WebAssembly.compile(given);
@@ -49,6 +49,11 @@ export class Module {
       throw new TypeError(`these are not the bytes of ${this.#name}.wasm or ${this.#name}-scalar.wasm`);
     });
     return this.#compiled.then(() => undefined);
+  }
+
+  /** Resolves once it is compiled; begins with that when somebody waits. */
+  get ready() {
+    return {then: (...handlers) => this.compiled().then(() => undefined).then(...handlers)};
   }
 
   /** @returns {Promise<WebAssembly.Module>} */

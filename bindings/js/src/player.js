@@ -1,5 +1,6 @@
 // Containers (.gic), from any source of bytes.
 import {placeOf} from './description.js';
+import {checkResponse} from './error.js';
 import {bytesOf} from './instance.js';
 import {place, useWorkers} from './workers.js';
 
@@ -45,9 +46,7 @@ export class Player {
                           'open(fetch(url)) takes it from the net, open(readFile(path)) from a disk');
     }
     if (typeof Response !== 'undefined' && source instanceof Response) {
-      if (!source.ok) {
-        throw new TypeError(`the server answers ${source.status} ${source.statusText} for ${source.url || 'the container'}`);
-      }
+      checkResponse(source);
       this.#owned = true;
       source = source.body ?? new Uint8Array();
     } else if (typeof Blob !== 'undefined' && source instanceof Blob) {
@@ -97,7 +96,7 @@ export class Player {
     return this.#abortable(this.#host.call(method, values, transfer));
   }
 
-  /** Runs one call after the other: players of workers are shared by nobody either. */
+  /** Runs one call after the other, also where the caller does not wait. */
   #inTurn(body) {
     const turn = this.#turn.then(body);
     this.#turn = turn.catch(() => {});

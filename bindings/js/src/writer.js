@@ -26,9 +26,7 @@ export class Writer {
     }
     const bounds = (place) => (Array.isArray(options.maxError) ? options.maxError[place] : options.maxError) ?? 0;
     writer.#handle = instance.with((memory) => {
-      const out = memory.room(4);
-      instance.check('container_create', [out]);
-      const container = instance.word(out);
+      const container = instance.made('container_create', []);
       const note = (of, index, pairs = {}) => Object.entries(pairs).forEach(([name, value]) => instance.check(
           'container_add_metadata', [container, of, index, memory.text(name), memory.text(value)], {what: name}));
       note(METADATA_CONTAINER, 0, metadata);
@@ -50,8 +48,7 @@ export class Writer {
           instance.check('container_set_largest_error', [container, texture++, bounds(i)]);
         });
       });
-      instance.check('writer_create', [0, container, out]);
-      return instance.word(out);
+      return instance.made('writer_create', [0, container]);
     });
     return writer;
   }
@@ -62,8 +59,9 @@ export class Writer {
    */
   add(frame, volumes, blocks = 'changed') {
     frameNumber(frame);  // before an encoder goes on
-    const all = this.#encoders.size === 1 && !(volumes[this.#encoders.keys().next().value]?.constructor === Object)
-      ? {[this.#encoders.keys().next().value]: volumes} : volumes;
+    const [first, ...others] = this.#encoders.keys();
+    const bare = others.length === 0 && volumes[first]?.constructor !== Object;
+    const all = bare ? {[first]: volumes} : volumes;
     for (const [name, textures] of Object.entries(all)) {
       const encoder = this.#encoders.get(name);
       if (!encoder) throw new RangeError(`there is no volume "${name}": ${[...this.#encoders.keys()].join(', ')} are`);

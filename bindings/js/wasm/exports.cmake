@@ -11,7 +11,6 @@ set(decoder_exports
   gicodec_format_name
   gicodec_texture_desc_info
   gicodec_texture_desc_complete
-  gicodec_texture_desc_origin
   gicodec_volume_desc_create
   gicodec_volume_desc_add_group
   gicodec_volume_desc_add_texture
@@ -31,7 +30,6 @@ set(decoder_exports
   gicodec_volume_decoder_changed
   gicodec_packet_peek
   gicodec_backend_name
-  gicodec_container_texture
   gicodec_container_json
   gicodec_player_open
   gicodec_container_version
@@ -55,7 +53,6 @@ set(client_exports
   gicodec_format_name
   gicodec_texture_desc_info
   gicodec_texture_desc_complete
-  gicodec_texture_desc_origin
   gicodec_volume_desc_create
   gicodec_volume_desc_add_group
   gicodec_volume_desc_add_texture
@@ -95,15 +92,10 @@ set(encoder_exports
   gicodec_format_at
   gicodec_texture_desc_info
   gicodec_texture_desc_complete
-  gicodec_texture_desc_origin
   gicodec_volume_desc_create
   gicodec_volume_desc_add_group
   gicodec_volume_desc_add_texture
   gicodec_volume_desc_from_layout
-  gicodec_photon_volume
-  gicodec_voxel_volume
-  gicodec_ao_point_volume
-  gicodec_irradiance_vector_volume
   gicodec_layout_count
   gicodec_layout_name
   gicodec_layout_summary
@@ -128,8 +120,6 @@ set(encoder_exports
   gicodec_volume_encoder_packet
   gicodec_volume_encoder_request_keyframe
   gicodec_volume_encoder_set_preset
-  gicodec_volume_encoder_set_active
-  gicodec_volume_encoder_read
   gicodec_container_create
   gicodec_container_add_volume
   gicodec_container_set_geometry
