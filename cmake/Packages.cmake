@@ -6,6 +6,14 @@
 #   gicodec-hevc      HEVC for both; alone because x265 is GPL
 set(abi ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 set(CPACK_GENERATOR "DEB;TGZ")
+if(WIN32)
+  set(CPACK_GENERATOR ZIP)  # of everything, with the licences of what is linked into the programs
+  foreach(package libopenexr-dev libimath-dev libfmt-dev nlohmann-json3-dev libcli11-dev libz-mingw-w64-dev
+          gcc-mingw-w64-x86-64-posix-runtime mingw-w64-x86-64-dev)
+    install(FILES /usr/share/doc/${package}/copyright RENAME ${package}
+            DESTINATION ${CMAKE_INSTALL_DOCDIR}/licences COMPONENT tools)
+  endforeach()
+endif()
 set(CPACK_PACKAGE_NAME gicodec)
 set(CPACK_PACKAGE_VENDOR "the libgicodec authors")
 set(CPACK_PACKAGE_CONTACT "the libgicodec authors")

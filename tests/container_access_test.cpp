@@ -363,14 +363,14 @@ TEST(ContainerAccess, AGrownFileCostsWhatIsNew) {
 
 TEST(ContainerAccess, FilesOfStdioThatGrow) {
   const auto sample = make_sample(7, 6);
-  std::FILE* writing = std::tmpfile();
+  const std::string name =
+      testing::TempDir() + "gicodec-growing-" + std::to_string(std::random_device()());
+  std::FILE* writing = std::fopen(name.c_str(), "wb");
   ASSERT_NE(writing, nullptr);
-  char name[64];
-  std::snprintf(name, sizeof name, "/proc/self/fd/%d", fileno(writing));
   FileSink sink(writing);
   const std::size_t head = head_of(sample.description).size();
   ASSERT_EQ(sink.write(std::span(sample.bytes).first(head + 1)), Status::ok);
-  std::FILE* reading = std::fopen(name, "rb");
+  std::FILE* reading = std::fopen(name.c_str(), "rb");
   ASSERT_NE(reading, nullptr);
   FileSource source(reading);
   auto reader = *ContainerReader::open(source);
@@ -386,6 +386,7 @@ TEST(ContainerAccess, FilesOfStdioThatGrow) {
   EXPECT_EQ(source.size(), std::optional<std::uint64_t>(sample.bytes.size()));
   std::fclose(reading);
   std::fclose(writing);
+  std::remove(name.c_str());
 }
 
 TEST(ContainerAccess, IndexesOfManyParts) {

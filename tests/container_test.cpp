@@ -60,14 +60,16 @@ TEST(Container, StdioFiles) {
   EXPECT_TRUE(same_packets(packets, sample.packets));
   std::fclose(file);
 
+#if defined(__linux__)
   std::FILE* full = std::fopen("/dev/full", "wb");
-  if (full == nullptr) GTEST_SKIP() << "no /dev/full";
+  ASSERT_NE(full, nullptr);
   std::setvbuf(full, nullptr, _IONBF, 0);
   FileSink full_sink(full);
   EXPECT_EQ(ContainerWriter::create(full_sink, sample.description).status(), Status::io_failed);
   FileSource unreadable(full);
   EXPECT_EQ(ContainerReader::open(unreadable).status(), Status::io_failed);
   std::fclose(full);
+#endif
 }
 
 TEST(Container, EveryPrefixGivesThePacketsBeforeTheCut) {

@@ -3,7 +3,12 @@
 #include "base/checksum.h"
 #include "sanitizers.h"
 
+#if defined(GICODEC_ASAN)
 #include <sanitizer/asan_interface.h>
+#else
+#define ASAN_POISON_MEMORY_REGION(start, size) (static_cast<void>(start), static_cast<void>(size))
+#define ASAN_UNPOISON_MEMORY_REGION(start, size) (static_cast<void>(start), static_cast<void>(size))
+#endif
 
 #include <algorithm>
 #include <array>

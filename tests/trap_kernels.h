@@ -9,7 +9,7 @@
 #include "transform/byte_plane_kernels.h"
 #include "transform/yuv444_kernels.h"
 
-#if defined(__x86_64__) || defined(__aarch64__)
+#if (defined(__x86_64__) || defined(__aarch64__)) && !defined(_WIN32)
 #define GICODEC_TRAPS  // There are such instructions, and memory that holds code can be written.
 
 #include <sys/mman.h>

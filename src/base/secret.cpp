@@ -1,16 +1,39 @@
 #include "base/secret.h"
 
+#if defined(_WIN32)
+#ifndef NOMINMAX
+#define NOMINMAX
+#endif
+#include <windows.h>
+// Needs windows.h.
+#include <bcrypt.h>
+#else
 #include <sys/random.h>
 #include <unistd.h>
+#endif
+
 #include <algorithm>
 
 namespace gicodec {
+namespace {
+
+constexpr std::size_t kMax = 256;  // getentropy()'s limit per call
+
+bool fill(std::span<std::byte> out) noexcept {
+#if defined(_WIN32)
+  return BCryptGenRandom(nullptr, reinterpret_cast<unsigned char*>(out.data()),
+                         static_cast<ULONG>(out.size()), BCRYPT_USE_SYSTEM_PREFERRED_RNG) == 0;
+#else
+  return getentropy(out.data(), out.size()) == 0;
+#endif
+}
+
+}  // namespace
 
 Status system_random(std::span<std::byte> out) noexcept {
-  constexpr std::size_t kMax = 256;  // getentropy()'s limit per call
   while (!out.empty()) {
     const std::size_t size = std::min(out.size(), kMax);
-    if (getentropy(out.data(), size) != 0) return Status::io_failed;
+    if (!fill(out.first(size))) return Status::io_failed;
     out = out.subspan(size);
   }
   return Status::ok;

@@ -17,8 +17,10 @@
 #include <cstdint>
 #include <cstring>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace gicodec {
@@ -128,6 +130,20 @@ template <typename Options, typename Any, typename Fill>
     handle.reset();  // within the scope
     return status;
   });
+}
+
+/// Moves a result to where it is kept; its status.
+template <typename T>
+[[nodiscard]] Status keep(Result<T> made, std::optional<T>& kept) {
+  if (!made) return made.status();
+  kept.emplace(*std::move(made));
+  return Status::ok;
+}
+template <typename T>
+[[nodiscard]] Status keep(Result<T> made, T& kept) {
+  if (!made) return made.status();
+  kept = *std::move(made);
+  return Status::ok;
 }
 
 template <typename Any>

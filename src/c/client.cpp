@@ -64,9 +64,7 @@ gicodec_status gicodec_client_create(const gicodec_client_options* options, gico
           status = c::take_backends(given.backends, given.backend_count, settings.backends);
         }
         if (status != Status::ok) return status;
-        auto client = Client::create(settings);
-        if (client) handle.client.emplace(*std::move(client));
-        return client.status();
+        return c::keep(Client::create(settings), handle.client);
       });
 }
 

@@ -51,9 +51,7 @@ gicodec_status gicodec_decoder_create(const gicodec_texture_desc* desc,
                      Status status = c::take_desc(desc, texture);
                      if (status == Status::ok) status = c::take_options(given, handle, settings);
                      if (status != Status::ok) return status;
-                     auto decoder = Decoder::create(texture, settings);
-                     if (decoder) handle.decoder.emplace(*std::move(decoder));
-                     return decoder.status();
+                     return c::keep(Decoder::create(texture, settings), handle.decoder);
                    });
 }
 
@@ -134,9 +132,7 @@ gicodec_status gicodec_volume_decoder_create(const gicodec_volume_desc* volume,
         const Status status = c::take_options(given, handle, settings);
         if (status != Status::ok) return status;
         settings.first_texture = static_cast<uint8_t>(given.texture_id);
-        auto decoder = VolumeDecoder::create(volume->desc, settings);
-        if (decoder) handle.decoder.emplace(*std::move(decoder));
-        return decoder.status();
+        return c::keep(VolumeDecoder::create(volume->desc, settings), handle.decoder);
       });
 }
 

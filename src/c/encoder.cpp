@@ -88,9 +88,7 @@ gicodec_status gicodec_encoder_create(const gicodec_texture_desc* desc,
                      settings.max_error = given.max_error;
                      settings.settings.threads = handle.host.threads();
                      settings.settings.isa = handle.host.isa();
-                     auto encoder = Encoder::create(texture, settings);
-                     if (encoder) handle.encoder.emplace(*std::move(encoder));
-                     return encoder.status();
+                     return c::keep(Encoder::create(texture, settings), handle.encoder);
                    });
 }
 
@@ -190,9 +188,7 @@ gicodec_status gicodec_volume_encoder_create(const gicodec_volume_desc* volume,
         settings.first_texture = static_cast<uint8_t>(given.texture_id);
         settings.settings.threads = handle.host.threads();
         settings.settings.isa = handle.host.isa();
-        auto encoder = VolumeEncoder::create(volume->desc, settings);
-        if (encoder) handle.encoder.emplace(*std::move(encoder));
-        return encoder.status();
+        return c::keep(VolumeEncoder::create(volume->desc, settings), handle.encoder);
       });
 }
 
@@ -212,18 +208,13 @@ gicodec_status gicodec_volume_encoder_encode(gicodec_volume_encoder* encoder,
     Selection wanted = Selection::changed();
     status = c::take_selection(selection, blocks, block_count, wanted);
     if (status != Status::ok) return status;
-    auto packets = encoder->encoder->encode(texels, wanted);
-    if (packets) encoder->packets = *std::move(packets);
-    return packets.status();
+    return c::keep(encoder->encoder->encode(texels, wanted), encoder->packets);
   });
 }
 
 gicodec_status gicodec_volume_encoder_snapshot(gicodec_volume_encoder* encoder) {
-  return c::call(encoder, [&]() -> Status {
-    auto packets = encoder->encoder->snapshot();
-    if (packets) encoder->packets = *std::move(packets);
-    return packets.status();
-  });
+  return c::call(
+      encoder, [&]() -> Status { return c::keep(encoder->encoder->snapshot(), encoder->packets); });
 }
 
 uint32_t gicodec_volume_encoder_packets(const gicodec_volume_encoder* encoder) {

@@ -104,9 +104,7 @@ gicodec_status gicodec_server_create(const gicodec_server_options* options, gico
                      ServerOptions settings;
                      const Status status = c::take_options(given, handle.host, settings);
                      if (status != Status::ok) return status;
-                     auto server = Server::create(settings);
-                     if (server) handle.server.emplace(*std::move(server));
-                     return server.status();
+                     return c::keep(Server::create(settings), handle.server);
                    });
 }
 

@@ -12,3 +12,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+
+// Functions of kernels have internal linkage (dispatch.h), those of <bit> have not.
+[[gnu::always_inline]] static inline int lowest_bit(unsigned mask) { return __builtin_ctz(mask); }
+[[gnu::always_inline]] static inline int bits_set(unsigned mask) {
+  return __builtin_popcount(mask);
+}

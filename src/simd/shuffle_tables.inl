@@ -7,7 +7,7 @@ struct ShuffleTables {
 constexpr ShuffleTables make_shuffles() {
   ShuffleTables t{};
   for (unsigned m = 0; m < 16; ++m) {
-    const auto k = static_cast<unsigned>(__builtin_popcount(m));
+    const auto k = static_cast<unsigned>(std::popcount(m));
     t.bytes[m] = static_cast<std::uint8_t>(2 * k);
     unsigned at = 4 - k;
     for (unsigned b = 0; b < 16; ++b) t.gather[m][b] = 0x80;

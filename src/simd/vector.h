@@ -3,6 +3,7 @@
 // include intrinsics.h and, within an unnamed namespace, the wrapper of their set, GICODEC_VECTORS.
 #pragma once
 
+#include <bit>
 #include <cstdint>
 
 #ifdef GICODEC_SMALL  // Small rather than fast.

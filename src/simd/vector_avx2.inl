@@ -130,12 +130,12 @@ GICODEC_INLINE void refill(I16& high, I16& low, std::uint32_t active, const std:
   high = select(empty, low, high);
   GICODEC_EACH16 {
     const unsigned first = lanes >> 16 * i & 0xFF, second = lanes >> (16 * i + 8) & 0xFF;
-    const std::uint8_t* const then = next + 2 * __builtin_popcount(first);
+    const std::uint8_t* const then = next + 2 * bits_set(first);
     const Reg taken = _mm256_shuffle_epi8(
         _mm256_set_m128i(loaded(then), loaded(next)),
         _mm256_set_m128i(loaded(kSpread.words[second]), loaded(kSpread.words[first])));
     low.v[i] = _mm256_blendv_epi8(low.v[i], taken, empty.v[i]);
-    next = then + 2 * __builtin_popcount(second);
+    next = then + 2 * bits_set(second);
   }
 }
 struct PermuteTables {
@@ -144,7 +144,7 @@ struct PermuteTables {
 constexpr PermuteTables make_permutes() {
   PermuteTables t{};
   for (unsigned m = 0; m < 256; ++m) {
-    unsigned at = 8 - static_cast<unsigned>(__builtin_popcount(m));
+    unsigned at = 8 - static_cast<unsigned>(std::popcount(m));
     for (unsigned l = 0; l < 8; ++l) {
       if (m >> l & 1) t.gather[m][at++] = static_cast<std::uint8_t>(l);
     }
@@ -169,7 +169,7 @@ GICODEC_INLINE U32 spill(U32 x, U32 limit, std::uint32_t active, std::uint8_t*& 
         reinterpret_cast<__m128i*>(next - 16),
         _mm_packus_epi32(_mm256_castsi256_si128(low), _mm256_extracti128_si256(low, 1)));
     x.v[i] = _mm256_blendv_epi8(x.v[i], _mm256_srli_epi32(x.v[i], 16), out);
-    next -= 2 * __builtin_popcount(bits);
+    next -= 2 * bits_set(bits);
   }
   return x;
 }

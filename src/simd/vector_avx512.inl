@@ -88,13 +88,13 @@ GICODEC_INLINE void refill(I16& high, I16& low, std::uint32_t active, const std:
   const __mmask32 empty = _mm512_mask_cmpeq_epi16_mask(active, high.v[0], _mm512_setzero_si512());
   high.v[0] = _mm512_mask_mov_epi16(high.v[0], empty, low.v[0]);
   low.v[0] = _mm512_mask_expand_epi16(low.v[0], empty, load_reg(next));
-  next += 2 * __builtin_popcount(empty);
+  next += 2 * bits_set(empty);
 }
 GICODEC_INLINE U32 spill(U32 x, U32 limit, std::uint32_t active, std::uint8_t*& next) {
   for (int i = 2 * kRegs; i-- > 0;) {
     const __mmask16 out =
         _mm512_mask_cmpge_epu32_mask(mask32(active >> 16 * i), x.v[i], limit.v[i]);
-    const int count = __builtin_popcount(out);
+    const int count = bits_set(out);
     next -= 2 * count;
     _mm256_mask_storeu_epi16(next, static_cast<__mmask16>((1U << count) - 1),
                              _mm512_cvtepi32_epi16(_mm512_maskz_compress_epi32(out, x.v[i])));

@@ -5,8 +5,9 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <map>
 #include <mutex>
-#include <set>
+#include <new>
 #include <thread>
 
 namespace gicodec {
@@ -17,7 +18,7 @@ using namespace test;
 /// Counts what it gives, and fails on demand.
 struct CArena {
   std::mutex mutex;
-  std::set<void*> given;
+  std::map<void*, std::align_val_t> given;
   std::size_t most = SIZE_MAX, calls = 0;
 
   static void* allocate(void* self, std::size_t bytes, std::size_t alignment) {
@@ -25,16 +26,18 @@ struct CArena {
     const std::lock_guard lock(arena.mutex);
     if (arena.calls >= arena.most) return nullptr;
     ++arena.calls;
-    const std::size_t aligned = std::max(alignment, sizeof(void*));
-    void* const memory = std::aligned_alloc(aligned, (bytes + aligned - 1) / aligned * aligned);
-    arena.given.insert(memory);
+    const auto aligned = static_cast<std::align_val_t>(std::max(alignment, sizeof(void*)));
+    void* const memory = ::operator new(bytes, aligned, std::nothrow);
+    if (memory != nullptr) arena.given.emplace(memory, aligned);
     return memory;
   }
   static void release(void* self, void* memory, std::size_t) {
     CArena& arena = *static_cast<CArena*>(self);
     const std::lock_guard lock(arena.mutex);
-    EXPECT_EQ(arena.given.erase(memory), 1U);
-    std::free(memory);
+    const auto found = arena.given.find(memory);
+    ASSERT_NE(found, arena.given.end());
+    ::operator delete(memory, found->second);
+    arena.given.erase(found);
   }
   [[nodiscard]] gicodec_host host() {
     auto out = sized<gicodec_host>();

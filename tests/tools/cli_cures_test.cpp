@@ -135,6 +135,7 @@ TEST_F(CliCures, Formats) {
 }
 
 TEST_F(CliCures, Channels) {
+  if (!kWithImages) GTEST_SKIP() << "without PNG";
   Dump named = without_alpha(foreign(Format::R16G16B16A16_SFLOAT));
   for (std::size_t i = 0; i < 3; ++i) {
     named.info.channels.names[i] = std::string("light") + "RGB"[i];
@@ -274,6 +275,7 @@ TEST_F(CliCures, ManyFiles) {
 }
 
 TEST_F(CliCures, FilesOfOtherKinds) {
+  if (!kWithImages) GTEST_SKIP() << "without PNG";
   for (const char* name : {"in/a.exr", "more/b.exr"}) {
     fs::create_directories(fs::path(path(name)).parent_path());
     write(name, foreign(Format::R16_SFLOAT));
@@ -394,6 +396,7 @@ TEST_F(CliCures, Memory) {
 }
 
 TEST_F(CliCures, Frames) {
+  if (!kWithImages) GTEST_SKIP() << "without PNG";
   program_.make_dumps(3);
   program_.succeed({"encode", "-o", "x.gic", "in"});
   auto bytes = file_bytes(path("x.gic"));
@@ -474,6 +477,7 @@ TEST_F(CliCures, Metadata) {
 
 /// Behind all others.
 TEST_F(CliCures, ZEveryRowIsShown) {
+  if (!kWithImages) GTEST_SKIP() << "without PNG";
   if (shown().empty()) GTEST_SKIP() << "runs behind the other tests of this suite";
   shown().insert(Cure::play_gaps);  // of gi-server, tests/streaming
   for (int row = 0; row <= static_cast<int>(kLastOwnCure); ++row) {

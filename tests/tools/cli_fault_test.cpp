@@ -18,7 +18,8 @@ namespace fs = std::filesystem;
 
 class CliFault : public testing::Test {
  protected:
-  [[nodiscard]] Outcome limited(rlim_t bytes, const std::vector<std::string>& arguments) const {
+  [[nodiscard]] Outcome limited(std::uint64_t bytes,
+                                const std::vector<std::string>& arguments) const {
     Circumstances full;
     full.file_bytes = bytes;
     return program_.run_in(full, arguments);
@@ -40,7 +41,7 @@ TEST_F(CliFault, FullDisk) {
     EXPECT_EQ(program_.files(), files);
   }
   const auto dumps = program_.files("out");
-  for (const rlim_t bytes : {1, 5000}) {
+  for (const std::uint64_t bytes : {1, 5000}) {
     const Outcome outcome = limited(bytes, {"decode", "x.gic", "-o", "out", "--overwrite"});
     EXPECT_EQ(outcome.exit, 4);
     EXPECT_EQ(bytes > 1, outcome.err.find("too large") != std::string::npos) << outcome.err;

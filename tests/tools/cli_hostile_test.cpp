@@ -17,7 +17,7 @@ class CliHostile : public testing::Test {
   /// The program is killed, or fails for want of memory, beyond this.
   [[nodiscard]] Outcome within(std::size_t mebibytes, const std::vector<std::string>& arguments) {
     Circumstances narrow{.kill_when = {}};
-    narrow.memory = rlim_t{mebibytes} << 20;
+    narrow.memory = std::uint64_t{mebibytes} << 20;
     return program_.run_in(narrow, arguments);
   }
   void expect_bounded(const HostileContainer& hostile, const Outcome& outcome,

@@ -267,6 +267,7 @@ TEST(Cli, CropKeepsTexels) {
 }
 
 TEST(Cli, PreviewWritesPng) {
+  if (!kWithImages) GTEST_SKIP() << "without PNG";
   const Program program;
   program.make_dumps(2);
   program.succeed({"encode", "-o", "x.gic", "in"});

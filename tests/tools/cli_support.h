@@ -3,15 +3,20 @@
 
 #include "tools/dump_support.h"
 
-#include <sys/resource.h>
-
 #include <csignal>
-
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
 
 namespace gicodec::tools {
+
+#if defined(_WIN32)
+inline constexpr bool kWindows = true;
+#else
+inline constexpr bool kWindows = false;
+#endif
+inline constexpr bool kWithImages = !kWindows;  ///< PNG, TIFF and DPX
 
 struct Outcome {
   int exit = -1;  ///< exit code; 128 + signal if the program was killed
@@ -20,13 +25,14 @@ struct Outcome {
   long peak_kilobytes = 0;  ///< most memory it had at a time; for runs with kill_when
 };
 
-/// The circumstances of a run.
+inline constexpr std::uint64_t kNoLimit = ~std::uint64_t{0};
+/// The circumstances of a run. On Windows the first two, and kill_when, which sends Ctrl-C.
 struct Circumstances {
-  std::string input = "/dev/null";    ///< standard input
-  rlim_t file_bytes = RLIM_INFINITY;  ///< no file may grow beyond
+  std::string input = "/dev/null";      ///< standard input
+  std::uint64_t file_bytes = kNoLimit;  ///< no file may grow beyond
   /// Addresses that the program may have; with sanitizers, which have terabytes of them, memory,
   /// and theirs besides.
-  rlim_t memory = RLIM_INFINITY;
+  std::uint64_t memory = kNoLimit;
   std::string libraries = {};       ///< folder that is searched first for libraries and modules
   long failing_allocation = 0;      ///< number of one that fails; 0: none
   std::string allocations = {};     ///< a file that gets their number
@@ -37,7 +43,7 @@ struct Circumstances {
   bool one_stream = false;          ///< standard error goes where standard output goes
   bool terminal = false;            ///< standard output is one; Outcome::out is empty
   std::function<bool()> kill_when;  ///< `signal` as soon as this holds; asked again and again
-  int signal = SIGKILL;
+  int signal = 9;                   // SIGKILL
 };
 
 /// Runs gicodec with these arguments in a directory of its own.
@@ -49,7 +55,8 @@ class Program {
   }
   [[nodiscard]] Outcome run_in(const Circumstances& circumstances,
                                const std::vector<std::string>& arguments) const;
-  /// The same and expects success.
+  /// The same and expects success. This and the next do nothing for what a build without images
+  /// cannot do.
   Outcome succeed(const std::vector<std::string>& arguments) const;
   /// The same and expects an exit code, a message on standard error that has all the parts, and no
   /// file in the directory that was not there before.

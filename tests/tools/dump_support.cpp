@@ -1,8 +1,12 @@
 #include "tools/dump_support.h"
 
+#include "dump/file_system.h"
+
 #include <gicodec/textures.h>
 
-#include <unistd.h>
+#if defined(_WIN32)
+#include <windows.h>
+#endif
 
 #include <algorithm>
 #include <cstdlib>
@@ -16,9 +20,11 @@ namespace gicodec::tools {
 namespace fs = std::filesystem;
 
 TemporaryDirectory::TemporaryDirectory() {
-  std::string pattern = (fs::temp_directory_path() / "gicodec-test-XXXXXX").string();
-  if (mkdtemp(pattern.data()) == nullptr) std::abort();
-  root_ = pattern;
+  std::random_device random;
+  do {
+    root_ = fs::temp_directory_path() / fmt::format("gicodec-test-{:08x}", random());
+  } while (!fs::create_directory(root_));
+  fs::permissions(root_, fs::perms::owner_all);
 }
 
 TemporaryDirectory::~TemporaryDirectory() {
@@ -28,13 +34,22 @@ TemporaryDirectory::~TemporaryDirectory() {
 
 std::vector<std::string> TemporaryDirectory::files(const std::string& folder) const {
   std::vector<std::string> names;
-  if (!fs::exists(root_ / folder)) return names;
-  for (const auto& entry : fs::directory_iterator(root_ / folder)) {
-    if (entry.is_regular_file()) names.push_back(entry.path().filename().string());
+  if (!fs::exists(root_ / native_path(folder))) return names;
+  for (const auto& entry : fs::directory_iterator(root_ / native_path(folder))) {
+    if (entry.is_regular_file()) names.push_back(path_text(entry.path().filename()));
   }
   std::sort(names.begin(), names.end());
   return names;
 }
+
+#if defined(_WIN32)
+bool long_paths() {
+  const HMODULE system = GetModuleHandleW(L"ntdll");
+  const auto asked = reinterpret_cast<BOOLEAN(NTAPI*)()>(
+      reinterpret_cast<void*>(GetProcAddress(system, "RtlAreLongPathsEnabled")));
+  return asked != nullptr && asked() != 0;
+}
+#endif
 
 std::vector<std::byte> random_texels(const TextureDesc& desc, std::uint32_t seed) {
   std::mt19937 random(seed);
@@ -83,13 +98,13 @@ Dump without_alpha(Dump dump) {
 
 std::vector<std::byte> file_bytes(const std::string& path) {
   std::ostringstream text;
-  text << std::ifstream(path, std::ios::binary).rdbuf();
+  text << std::ifstream(native_path(path), std::ios::binary).rdbuf();
   const auto bytes = std::as_bytes(std::span(text.view()));
   return {bytes.begin(), bytes.end()};
 }
 
 void write_bytes(const std::string& path, std::span<const std::byte> bytes) {
-  std::ofstream file(path, std::ios::binary | std::ios::trunc);
+  std::ofstream file(native_path(path), std::ios::binary | std::ios::trunc);
   file.write(reinterpret_cast<const char*>(bytes.data()),
              static_cast<std::streamsize>(bytes.size()));
 }

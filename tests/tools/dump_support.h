@@ -3,6 +3,7 @@
 
 #include "dump/dump.h"
 #include "dump/error.h"
+#include "dump/file_system.h"
 #include "dump/texture_file.h"
 
 #include <gicodec/probes.h>
@@ -22,13 +23,20 @@ class TemporaryDirectory {
   TemporaryDirectory(const TemporaryDirectory&) = delete;
   TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
   ~TemporaryDirectory();
-  [[nodiscard]] std::string path(const std::string& name) const { return (root_ / name).string(); }
+  [[nodiscard]] std::string path(const std::string& name) const {
+    return path_text(root_ / native_path(name));
+  }
   /// Names of the files in it, hidden ones included, ascending.
   [[nodiscard]] std::vector<std::string> files(const std::string& folder = "") const;
 
  private:
   std::filesystem::path root_;
 };
+
+#if defined(_WIN32)
+/// Whether the system allows paths of more than 260 characters.
+[[nodiscard]] bool long_paths();
+#endif
 
 /// Reproducible texels; bits that no component uses are zero.
 [[nodiscard]] std::vector<std::byte> random_texels(const TextureDesc& desc, std::uint32_t seed);

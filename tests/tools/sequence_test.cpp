@@ -226,7 +226,9 @@ TEST(Sequence, PatternsOfManyStars) {
 TEST(Sequence, LinksToNothingAreLeftOut) {
   const TemporaryDirectory directory;
   std::ofstream(directory.path("a.exr")) << "x";
-  std::filesystem::create_symlink("nowhere", directory.path("b.exr"));
+  std::error_code error;
+  std::filesystem::create_symlink("nowhere", directory.path("b.exr"), error);
+  if (error) GTEST_SKIP() << "no links: " << error.message();
   SequenceRemarks remarks;
   EXPECT_EQ(group_sequences({directory.path("")}, {}, &remarks).size(), 1U);
   ASSERT_EQ(remarks.left_out.size(), 1U);

@@ -1,10 +1,10 @@
 #include "cli.h"
 
 #include "dump/data_text.h"
+#include "dump/file_system.h"
 
 #include <gicodec/threads.h>
 
-#include <unistd.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -59,7 +59,7 @@ void remark(const std::string& text) { print(stderr, "gicodec: {}\n", message(te
 void print_json(nlohmann::ordered_json json) { write_json(stdout, std::move(json), 2); }
 
 Progress::Progress(std::string label, std::size_t total, const Cli& cli)
-    : label_(std::move(label)), total_(total), shown_(!cli.quiet && isatty(STDERR_FILENO) != 0) {}
+    : label_(std::move(label)), total_(total), shown_(!cli.quiet && is_terminal(stderr)) {}
 
 Progress::~Progress() {
   if (shown_ && done_ > 0) print(stderr, "\r\033[K");

@@ -109,7 +109,9 @@ static std::string unknown_of(const CLI::App& app, int argc, const char* const* 
 Command::Command(std::string description, std::string name)
     : name_(std::move(name)),
       own_(std::make_unique<CLI::App>(std::move(description), name_)),
-      app_(own_.get()) {}
+      app_(own_.get()) {
+  app_->allow_windows_style_options(false);  // paths begin like these
+}
 
 Command::Command(CLI::App* app, std::string name) : name_(std::move(name)), app_(app) {}
 

@@ -3,6 +3,7 @@
 #include "cli.h"
 #include "dump/cure.h"
 #include "dump/error.h"
+#include "dump/file_system.h"
 #include "file_forms.h"
 #include "volume_words.h"
 
@@ -42,13 +43,13 @@ ContainerInput::ContainerInput(const std::string& path, const DecoderFlags& deco
     : path_(path == "-" ? "standard input" : path),
       decoding_(decoding),
       hevc_(hevc_decoder(decoding)),
-      file_(path == "-" ? stdin : std::fopen(path.c_str(), "rb")) {
-  if (!file_) fail(Exit::io, "{}: cannot be opened: {}", path_, std::strerror(errno));
+      file_(path == "-" ? stdin : open_input(path)) {
+  if (!file_) fail(Exit::io, "{}: cannot be opened: {}", path_, reason(errno));
   std::error_code error;
-  if (path != "-" && std::filesystem::is_directory(path, error))
+  if (path != "-" && std::filesystem::is_directory(native_path(path), error))
     fail(Exit::io, "{}: is a directory, not a container", path_);
-  if (std::filesystem::is_regular_file(path, error) &&
-      std::filesystem::file_size(path, error) == 0) {
+  if (std::filesystem::is_regular_file(native_path(path), error) &&
+      std::filesystem::file_size(native_path(path), error) == 0) {
     fail(Exit::bad_input,
          "{}: is empty: a recording that was ended before its first packet, or a copy that failed; "
          "get it again",

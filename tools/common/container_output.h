@@ -3,6 +3,7 @@
 
 #include "dump/error.h"
 #include "dump/file.h"
+#include "dump/file_system.h"
 
 #include <gicodec/container.h>
 #include <gicodec/io.h>
@@ -46,7 +47,7 @@ class ContainerOutput {
  private:
   void require(Status status) {
     if (status == Status::io_failed) {
-      fail(Exit::io, "{}: cannot be written: {}", name_, std::strerror(errno));
+      fail(Exit::io, "{}: cannot be written: {}", name_, reason(errno));
     }
     check(status, name_);
   }

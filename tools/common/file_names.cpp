@@ -1,5 +1,6 @@
 #include "file_names.h"
 
+#include "dump/file_system.h"
 #include "dump/sequence.h"
 #include "dump/text.h"
 #include "dump/texture_file.h"
@@ -23,6 +24,13 @@ constexpr std::size_t kNumber = 10;     ///< digits of a frame's number for whic
 constexpr std::size_t kHash = 18;       ///< bytes of %~ and the hash
 constexpr const char* kNothing = "%-";  ///< stands for an empty text
 constexpr std::string_view kSidecar = ".json";
+#if defined(_WIN32)
+constexpr bool kWindows = true;
+#else
+constexpr bool kWindows = false;
+#endif
+/// What no name has there.
+constexpr std::string_view kWindowsHasNot = "\\:*?\"<>|";
 
 /// Bytes of the first character of `text`; 0 if a terminal does not show it as it is.
 std::size_t shown_size(std::string_view text) {
@@ -31,6 +39,21 @@ std::size_t shown_size(std::string_view text) {
     if (printable(text.substr(0, size)) == text.substr(0, size)) return size;
   }
   return 0;
+}
+
+/// True of names that are devices on Windows, with any extension: CON, COM1.
+bool is_device(std::string_view name) {
+  std::string stem = lower_case(std::string(name.substr(0, name.find('.'))));
+  stem.erase(stem.find_last_not_of(' ') + 1);
+  constexpr std::string_view kAlone[] = {"con", "prn", "aux", "nul", "conin$", "conout$"};
+  if (std::ranges::count(kAlone, stem) > 0) return true;
+  // The frame's number may follow at once; some write it above the line.
+  const bool numbered = stem.starts_with("com") || stem.starts_with("lpt");
+  const std::string_view number = std::string_view(stem).substr(numbered ? 3 : 0);
+  constexpr std::string_view kAbove[] = {"\u00B9", "\u00B2", "\u00B3"};
+  return numbered &&
+         (number.empty() || (number.size() == 1 && number[0] >= '0' && number[0] <= '9') ||
+          std::ranges::count(kAbove, number) > 0);
 }
 
 int hex_digit(char c) {
@@ -44,6 +67,7 @@ int escaped_byte(std::string_view text) {
   const int high = hex_digit(text[1]), low = hex_digit(text[2]);
   if (high > 15 || low > 15) return -1;
   const int byte = high * 16 + low;
+  if (kWindows) return byte;
   const bool may_stay = byte > ' ' && byte < 0x7F && byte != '%' && byte != '.' && byte != '/';
   return may_stay ? -1 : byte;
 }
@@ -102,14 +126,14 @@ bool has_sidecar(const StoredTexture& texture, std::string_view where) {
 
 std::vector<Names> names_of(const StoredTexture& texture) {
   const auto& [digits, extension, separator, base, counts_sign] = texture.names;
-  const std::string stem = file_stem(texture);
-  const std::string before = digits == 0 ? stem : stem + separator;
-  const std::string ending = extension.empty() ? "" : "." + extension;
+  const std::string stem = folded(file_stem(texture));
+  const std::string before = digits == 0 ? stem : stem + folded(separator);
+  const std::string ending = folded(extension.empty() ? "" : "." + extension);
   std::vector<Names> names{{before, digits, ending}};
   if (image_kind("x" + ending) != ImageKind::raw) return names;
   if (has_sidecar(texture, "")) names.push_back({before, digits, std::string(kSidecar)});
   if (has_sidecar(texture, "shared")) {
-    names.push_back({texture_path(texture.file_name(0)), 0, std::string(kSidecar)});
+    names.push_back({folded(texture_path(texture.file_name(0))), 0, std::string(kSidecar)});
   }
   return names;
 }
@@ -125,8 +149,12 @@ std::string as_file_name(std::string_view text, std::size_t most, std::string_vi
     const std::size_t shown = shown_size(rest);
     const char first = rest[0];
     const bool hides = part.empty() && first == '.';
-    if (shown == 0 || first == '/' || hides || also.find(first) != std::string_view::npos ||
-        reads_as_escape(rest)) {
+    const bool windows_refuses =
+        kWindows &&
+        (kWindowsHasNot.find(first) != std::string_view::npos ||
+         (part.empty() && is_device(text)) || (rest.size() == 1 && (first == ' ' || first == '.')));
+    if (shown == 0 || first == '/' || hides || windows_refuses ||
+        also.find(first) != std::string_view::npos || reads_as_escape(rest)) {
       part += fmt::format("%{:02X}", static_cast<unsigned char>(first));
       rest.remove_prefix(1);
     } else {

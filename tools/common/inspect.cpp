@@ -1,6 +1,7 @@
 // What the headers of a sequence's files make textures of.
 #include "dump/cure.h"
 #include "dump/error.h"
+#include "dump/file_system.h"
 #include "file_names.h"
 #include "stored_texture.h"
 #include "volume_words.h"
@@ -102,7 +103,7 @@ std::vector<StoredTexture> inspect(const Sequence& sequence, Hints hints) {
       add_changes(textures[i], infos[i].attributes, file.frame);
     }
     std::error_code error;
-    const auto bytes = std::filesystem::file_size(file.path, error);
+    const auto bytes = std::filesystem::file_size(native_path(file.path), error);
     if (!error) textures.front().file_bytes += bytes;
   }
   return textures;

@@ -1,6 +1,7 @@
 #include "probe_set.h"
 
 #include "dump/error.h"
+#include "dump/file_system.h"
 
 #include <gicodec/texture.h>
 
@@ -82,7 +83,7 @@ bool ProbeSet::contains(std::uint32_t probe) const noexcept {
 static constexpr std::size_t kMaxInactiveBytes = std::size_t{64} << 20;
 
 ProbeSet read_probe_set(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
+  std::ifstream file(native_path(path), std::ios::binary);
   std::string text;
   while (file && text.size() <= kMaxInactiveBytes) {
     constexpr std::size_t kStep = std::size_t{1} << 16;
@@ -92,7 +93,7 @@ ProbeSet read_probe_set(const std::string& path) {
     text.resize(before + static_cast<std::size_t>(file.gcount()));
   }
   if (!file.eof() && text.size() <= kMaxInactiveBytes) {
-    fail(Exit::io, "{}: cannot be read: {}", path, std::strerror(errno));
+    fail(Exit::io, "{}: cannot be read: {}", path, reason(errno));
   }
   if (text.size() > kMaxInactiveBytes) {
     fail(Exit::bad_input, "{}: has more than {} bytes; name probes by ranges a-b", path,

@@ -3,6 +3,7 @@
 
 #include "command_line.h"
 #include "dump/error.h"
+#include "interrupts.h"
 
 #include <functional>
 #include <string>
@@ -15,15 +16,8 @@ struct Interrupted {
 };
 /// To be called now and then in long work.
 void check_interrupt();
-/// For programs that end in their own way after SIGINT, SIGTERM or SIGHUP. Any thread may ask.
+/// For programs that end in their own way after a signal. Any thread may ask.
 [[nodiscard]] bool interrupted() noexcept;
-
-/// How these signals are taken.
-enum class Interrupts : std::uint8_t {
-  noted,  ///< the program looks at them when it does
-  /// What waits for a pipe ends as well; a second signal ends the program.
-  once,
-};
 
 /// Parses and runs; returns what main() is to return. Errors go to standard error behind the
 /// program's name. `formats`: what --version prints besides.

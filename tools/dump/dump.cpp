@@ -3,6 +3,7 @@
 #include "dump/block_place.h"
 #include "dump/cure.h"
 #include "dump/error.h"
+#include "dump/file_system.h"
 #include "dump/internal.h"
 #include "dump/text.h"
 #include "dump/texture_file.h"
@@ -19,7 +20,7 @@ namespace {
 /// Throws for a pipe: files are read twice, and opening a pipe would wait for its writer.
 void require_no_pipe(const std::string& path) {
   std::error_code error;
-  const auto type = std::filesystem::status(path, error).type();
+  const auto type = std::filesystem::status(native_path(path), error).type();
   using enum std::filesystem::file_type;
   if (error || type == regular || type == directory || type == not_found) return;
   fail(Exit::io, "{}: is no regular file; dumps are read more than once, so copy it into one",
@@ -29,7 +30,7 @@ void require_no_pipe(const std::string& path) {
 /// Throws for the file of three lines that Git LFS has in place of a large one.
 void require_no_pointer(const std::string& path) {
   std::string line;
-  std::ifstream file(path, std::ios::binary);
+  std::ifstream file(native_path(path), std::ios::binary);
   line.resize(24);
   file.read(line.data(), static_cast<std::streamsize>(line.size()));
   if (!line.starts_with("version https://git-lfs")) return;
@@ -59,7 +60,7 @@ std::string image_words(const DumpInfo& info) {
 }
 
 std::optional<ImageKind> image_kind(const std::string& path) {
-  const std::string ending = lower_case(std::filesystem::path(path).extension().string());
+  const std::string ending = lower_case(path_text(native_path(path).extension()));
   if (ending.empty() || ending == ".exr") return ImageKind::exr;
   if (ending == ".png") return ImageKind::png;
   if (ending == ".tif" || ending == ".tiff") return ImageKind::tiff;
@@ -76,8 +77,8 @@ bool has_format(ImageKind kind, Format format) noexcept {
 
 ImageKind require_image_kind(const std::string& path) {
   if (const auto kind = image_kind(path)) return *kind;
-  if (lower_case(std::filesystem::path(path).extension().string()) == ".gic") {
-    if (std::error_code error; !std::filesystem::exists(path, error)) {
+  if (lower_case(path_text(native_path(path).extension())) == ".gic") {
+    if (std::error_code error; !std::filesystem::exists(native_path(path), error)) {
       fail(Exit::io, "{}: cannot be opened: {}", path,
            std::make_error_code(std::errc::no_such_file_or_directory).message());
     }

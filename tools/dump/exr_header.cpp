@@ -2,6 +2,7 @@
 
 #include "dump/cure.h"
 #include "dump/error.h"
+#include "dump/file_system.h"
 #include "dump/internal.h"
 
 #include <algorithm>
@@ -75,9 +76,8 @@ struct Close {
 
 class HeaderWalk {
  public:
-  explicit HeaderWalk(const std::string& path)
-      : path_(path), file_(std::fopen(path.c_str(), "rb")) {
-    if (!file_) fail(Exit::io, "{}: cannot be opened: {}", path_, std::strerror(errno));
+  explicit HeaderWalk(const std::string& path) : path_(path), file_(open_input(path)) {
+    if (!file_) fail(Exit::io, "{}: cannot be opened: {}", path_, reason(errno));
   }
 
   std::vector<ExrPart> run() {
@@ -296,7 +296,7 @@ class HeaderWalk {
       return;
     }
     if (std::ferror(file_.get()) != 0) {
-      fail(Exit::io, "{}: cannot be read: {}", path_, std::strerror(errno));
+      fail(Exit::io, "{}: cannot be read: {}", path_, reason(errno));
     }
     fail(Exit::bad_input, "{}: ends within its EXR header", path_);
   }
@@ -345,7 +345,7 @@ std::int64_t exr_samples(std::int64_t first, std::int64_t last, std::int64_t ste
 void check_image_bytes(std::uint64_t bytes, std::uint64_t ratio, const std::string& path) {
   constexpr std::uint64_t kFree = std::uint64_t{64} << 20;
   std::error_code error;
-  const auto size = std::filesystem::file_size(path, error);
+  const auto size = std::filesystem::file_size(native_path(path), error);
   if (error || bytes <= kFree || (bytes / ratio <= size && bytes <= kMaxImageBytes)) return;
   fail(Exit::bad_input,
        "{}: claims {} bytes of samples; its {} bytes hold {} at most, and images may have {}", path,

@@ -56,10 +56,6 @@ void check_output(const std::string& path, const InputFiles& inputs, Existing ex
 /// True if `path` ("-": standard output) and standard error are the same file.
 [[nodiscard]] bool shares_standard_error(const std::string& path);
 
-/// Occupies the descriptors of standard input, output and error if the caller closed them; reading
-/// or writing them fails. Otherwise a file or socket opened later would get the number, and the
-/// data meant for the stream.
-void keep_standard_numbers() noexcept;
 /// Call it at a program's end: throws Error of Exit::io unless all printed text was written. A
 /// reader that closes early, as in "gicodec info x.gic | head", is no error.
 void finish_standard_output();
@@ -93,6 +89,8 @@ class AtomicFile {
  private:
   friend void remove_temporaries() noexcept;
   [[noreturn]] void fail_errno(const char* what) const;
+  std::FILE* open_hidden();
+  std::FILE* open_partial();
   void open_temporary(Temporary temporary);
   void list() noexcept;
   /// True if the temporary name still belongs to the opened file.

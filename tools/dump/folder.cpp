@@ -3,11 +3,13 @@
 #include "dump/cure.h"
 #include "dump/dump.h"
 #include "dump/error.h"
+#include "dump/file_system.h"
 #include "dump/frame_numbers.h"
 #include "dump/text.h"
 #include "dump/texture_file.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <filesystem>
 #include <iterator>
 #include <set>
@@ -41,30 +43,31 @@ struct Contents {
   LeftOut others;
 };
 
-void take_entry(const fs::directory_entry& entry, const std::vector<Sequence>& known,
-                Contents& contents) {
-  const std::string name = entry.path().filename().string();
+void take_entry(const std::string& folder, const std::string& name,
+                const std::vector<Sequence>& known, Contents& contents) {
   if (name[0] == '.') return;
+  const fs::path entry = native_path(folder) / native_path(name);
+  const std::string path = path_text(entry);
   const auto kind = image_kind(name);
   std::error_code error;
-  if (entry.is_directory(error)) return contents.named_only.add(name + "/");
+  if (fs::is_directory(entry, error)) return contents.named_only.add(name + "/");
   // Files without an extension count as EXR only if the caller names them.
-  const bool image = kind && entry.path().has_extension();
-  const bool leads_nowhere = entry.is_symlink(error) && !fs::exists(entry.path(), error);
+  const bool image = kind && entry.has_extension();
+  const bool leads_nowhere = fs::is_symlink(entry, error) && !fs::exists(entry, error);
   if (image && leads_nowhere) return contents.others.add(name + " (a link to nothing)");
   const auto is_known = [&] {
     const ParsedName parsed = parse_name(name);
-    const std::string stem = entry.path().stem().string();
+    const std::string stem = path_text(entry.stem());
     return std::ranges::any_of(known, [&](const Sequence& one) {
       return one.name == (one.names.digits == 0 ? stem : parsed.name);
     });
   };
   if (image && (is_written(*kind) || is_known())) {
-    contents.files.push_back(entry.path().string());
+    contents.files.push_back(path);
   } else if (image) {
     contents.named_only.add(name);
-  } else if (entry.path().extension() == ".json") {
-    contents.sidecars.push_back(entry.path().string());
+  } else if (entry.extension() == ".json") {
+    contents.sidecars.push_back(path);
   } else {
     contents.others.add(name);
   }
@@ -77,26 +80,27 @@ std::set<std::string> sidecars_of(const std::vector<std::string>& files) {
     if (image_kind(path) != ImageKind::raw) continue;
     std::string own = raw_sidecar_path(path, false);
     std::error_code error;
-    sidecars.insert(fs::exists(own, error) ? std::move(own) : raw_sidecar_path(path, true));
+    sidecars.insert(fs::exists(native_path(own), error) ? std::move(own)
+                                                        : raw_sidecar_path(path, true));
   }
   return sidecars;
 }
 
 Contents contents_of(const std::string& path, const std::vector<Sequence>& known) {
   Contents contents;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(path, error)) {
-    take_entry(entry, known, contents);
+  const auto names = names_in(path);
+  if (!names) fail(Exit::io, "{}: cannot be listed: {}", path, reason(errno));
+  for (const std::string& name : *names) {
+    take_entry(path, name, known, contents);
     if (contents.files.size() <= kMaxFiles) continue;
     fail(Exit::bad_input, "{}: has more than {} dumps; {}", path, kMaxFiles,
          to_cure(Cure::fewer_files));
   }
-  if (error) fail(Exit::io, "{}: cannot be listed: {}", path, error.message());
   std::ranges::sort(contents.files);
   const auto described = sidecars_of(contents.files);
   for (const std::string& sidecar : contents.sidecars) {
     if (!described.contains(sidecar)) {
-      contents.others.add(fs::path(sidecar).filename().string());
+      contents.others.add(path_text(native_path(sidecar).filename()));
     }
   }
   return contents;
@@ -126,7 +130,7 @@ std::vector<std::string> expand_directories(const std::vector<std::string>& path
   std::vector<std::string> files;
   for (const std::string& path : paths) {
     std::error_code error;
-    if (!fs::is_directory(path, error)) {
+    if (!fs::is_directory(native_path(path), error)) {
       files.push_back(path);
       continue;
     }
@@ -145,7 +149,8 @@ std::vector<std::string> expand_directories(const std::vector<std::string>& path
   const auto sidecars = sidecars_of(files);
   std::set<std::string> seen;
   std::erase_if(files, [&](const std::string& path) {
-    return sidecars.contains(path) || !seen.insert(fs::path(path).lexically_normal()).second;
+    return sidecars.contains(path) ||
+           !seen.insert(path_text(native_path(path).lexically_normal())).second;
   });
   return files;
 }

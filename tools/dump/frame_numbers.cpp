@@ -3,6 +3,7 @@
 #include "dump/cure.h"
 #include "dump/dump.h"
 #include "dump/error.h"
+#include "dump/file_system.h"
 #include "dump/text.h"
 
 #include <algorithm>
@@ -23,11 +24,11 @@ constexpr std::size_t kMaxDigits = 18;
 }  // namespace
 
 ParsedName parse_name(const std::string& file) {
-  const fs::path path(file);
+  const fs::path path = native_path(file);
   ParsedName parsed;
-  parsed.extension = path.extension().string();
+  parsed.extension = path_text(path.extension());
   if (!parsed.extension.empty()) parsed.extension.erase(0, 1);
-  const std::string stem = path.stem().string();
+  const std::string stem = path_text(path.stem());
   parsed.name = stem;
   std::size_t first = stem.size();
   while (first > 0 && is_digit(stem[first - 1])) --first;

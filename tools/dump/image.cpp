@@ -3,6 +3,7 @@
 #include "dump/cure.h"
 #include "dump/error.h"
 #include "dump/file.h"
+#include "dump/file_system.h"
 #include "dump/internal.h"
 #include "dump/text.h"
 #include "modules/images.h"
@@ -131,7 +132,7 @@ constexpr const char* kRename =
 /// Checks the header first: OpenImageIO allocates the size it gives for user data, and may abort.
 DpxSizes read_dpx_sizes(const std::string& path) {
   std::array<unsigned char, 36> head{};
-  std::ifstream file(path, std::ios::binary);
+  std::ifstream file(native_path(path), std::ios::binary);
   file.read(reinterpret_cast<char*>(head.data()), head.size());
   const bool big = std::memcmp(head.data(), "SDPX", 4) == 0;
   if (!big && std::memcmp(head.data(), "XPDS", 4) != 0) {
@@ -143,7 +144,8 @@ DpxSizes read_dpx_sizes(const std::string& path) {
     return value;
   };
   std::error_code error;
-  const DpxSizes sizes{word(4), word(16), word(32), std::filesystem::file_size(path, error)};
+  const DpxSizes sizes{word(4), word(16), word(32),
+                       std::filesystem::file_size(native_path(path), error)};
   if (!file || error) fail(Exit::bad_input, "{}: is truncated", path);
   if (sizes.user != kUndefined && sizes.user > sizes.file) {
     fail(Exit::bad_input, "{}: its header claims {} bytes of user data, more than it has", path,
@@ -155,7 +157,7 @@ DpxSizes read_dpx_sizes(const std::string& path) {
 /// Frames of an animated PNG, of which the first is read; 1 of any other.
 int png_frames(const std::string& path) {
   constexpr int kMagic = 8, kChecksum = 4;
-  std::ifstream file(path, std::ios::binary);
+  std::ifstream file(native_path(path), std::ios::binary);
   file.seekg(kMagic);
   const auto word = [&] {
     std::array<unsigned char, 4> bytes{};
@@ -189,7 +191,8 @@ void require_complete_dpx(const ImageHead& image, const DpxSizes& sizes, const s
 std::vector<Dump> read_image(const std::string& path, ImageKind kind, const Hints& hints,
                              bool texels) {
   std::error_code error;
-  if (!std::filesystem::exists(path, error)) fail(Exit::io, "{}: cannot be opened", path);
+  if (!std::filesystem::exists(native_path(path), error))
+    fail(Exit::io, "{}: cannot be opened", path);
   std::string why;
   std::optional<DpxSizes> dpx;
   if (kind == ImageKind::dpx) dpx = read_dpx_sizes(path);

@@ -1,6 +1,7 @@
 // Raw files: texels, and a JSON sidecar that describes them (gicodec(1), "Dumps").
 #include "dump/cure.h"
 #include "dump/error.h"
+#include "dump/file_system.h"
 #include "dump/geometry_attributes.h"
 #include "dump/sequence.h"
 #include "dump/text.h"
@@ -187,7 +188,7 @@ Attribute extent_attribute(const Grid& texels) {
 
 std::string raw_sidecar_path(const std::string& path, bool shared) {
   if (shared) return texture_path(path) + ".json";
-  return std::filesystem::path(path).replace_extension(".json").string();
+  return path_text(native_path(path).replace_extension(".json"));
 }
 
 TextureHead parse_sidecar(const std::string& text, const std::string& path) {
@@ -200,8 +201,8 @@ TextureHead read_raw_head(TextureFile& file, const Hints& hints) {
   const std::string own = raw_sidecar_path(file.path(), false),
                     shared = raw_sidecar_path(file.path(), true);
   std::error_code error;
-  const bool has_own = std::filesystem::exists(own, error),
-             has_shared = std::filesystem::exists(shared, error);
+  const bool has_own = std::filesystem::exists(native_path(own), error),
+             has_shared = std::filesystem::exists(native_path(shared), error);
   TextureHead head;
   if (!has_own && !has_shared) {
     const bool described = hints.format && hints.extent;

@@ -3,6 +3,7 @@
 #include "dump/cure.h"
 #include "dump/dump.h"
 #include "dump/error.h"
+#include "dump/file_system.h"
 #include "dump/folder.h"
 #include "dump/frame_numbers.h"
 #include "dump/text.h"
@@ -48,7 +49,7 @@ void settle(Sequence& sequence) {
   }
   for (const FrameFile& file : sequence.frames) {
     const std::string expected = sequence.file_name(file.frame);
-    if (fs::path(file.path).filename() != expected) {
+    if (path_text(native_path(file.path).filename()) != expected) {
       fail(Exit::bad_input, "{}: frame numbers of texture {} differ in width; {}", file.path,
            sequence.name, to_cure(Cure::name_it, expected));
     }
@@ -79,7 +80,8 @@ void refuse_gaps(const std::vector<Sequence>& sequences, Cure cure) {
       if (!hole && sequence.find(missing) != nullptr) continue;
       const std::string name = sequence.file_name(missing);
       fail(Exit::bad_input, "frame {} of texture {} is missing ({}); {}", missing, sequence.name,
-           (fs::path(sequence.frames.front().path).parent_path() / name).string(), to_cure(cure));
+           path_text(native_path(sequence.frames.front().path).parent_path() / native_path(name)),
+           to_cure(cure));
     }
   }
 }
@@ -156,7 +158,7 @@ std::vector<Sequence> group_sequences(const std::vector<std::string>& paths,
 }
 
 std::string texture_path(const std::string& path) {
-  return (fs::path(path).parent_path() / parse_name(path).name).string();
+  return path_text(native_path(path).parent_path() / native_path(parse_name(path).name));
 }
 
 bool is_separator(const std::string& text) noexcept {

@@ -3,6 +3,7 @@
 #include "dump/cure.h"
 #include "dump/error.h"
 #include "dump/file.h"
+#include "dump/file_system.h"
 #include "dump/geometry_attributes.h"
 #include "dump/internal.h"
 
@@ -122,7 +123,8 @@ std::pair<std::string, std::string> missing_sidecar(const std::string& path, con
   const bool shared = where != nullptr && where->value == "shared";
   std::string sidecar = raw_sidecar_path(path, shared);
   std::error_code error;
-  if (!text.empty() && std::filesystem::file_size(sidecar, error) == text.size() && !error) {
+  if (!text.empty() && std::filesystem::file_size(native_path(sidecar), error) == text.size() &&
+      !error) {
     TextureFile old(sidecar);
     if (std::ranges::equal(old.read(0, text.size()), std::as_bytes(std::span(text)))) text.clear();
   }
@@ -146,22 +148,24 @@ void write_with_sidecar(AtomicFile& texels, const std::string& path, const std::
 TextureFile::TextureFile(std::string path) : path_(std::move(path)) {
   // Opening a pipe would wait for its writer.
   std::error_code error;
-  if (std::filesystem::exists(path_, error) && !std::filesystem::is_regular_file(path_, error)) {
+  if (std::filesystem::exists(native_path(path_), error) &&
+      !std::filesystem::is_regular_file(native_path(path_), error)) {
     fail(Exit::io, "{}: is no regular file", path_);
   }
-  file_.reset(std::fopen(path_.c_str(), "rb"));
-  if (!file_) fail(Exit::io, "{}: cannot be opened: {}", path_, std::strerror(errno));
-  size_ = std::filesystem::file_size(path_, error);
-  if (error) fail(Exit::io, "{}: cannot be read: {}", path_, error.message());
+  file_.reset(open_input(path_));
+  if (!file_) fail(Exit::io, "{}: cannot be opened: {}", path_, reason(errno));
+  const auto state = state_of(file_.get());
+  if (!state) fail(Exit::io, "{}: cannot be read: {}", path_, reason(errno));
+  size_ = state->size;
 }
 
 void TextureFile::read(std::uint64_t offset, std::span<std::byte> into) {
   if (offset > size_ || into.size() > size_ - offset) {
     fail(Exit::bad_input, "{}: is truncated", path_);
   }
-  if (std::fseek(file_.get(), static_cast<long>(offset), SEEK_SET) != 0 ||
+  if (!seek_file(file_.get(), offset) ||
       std::fread(into.data(), 1, into.size(), file_.get()) != into.size()) {
-    fail(Exit::io, "{}: cannot be read: {}", path_, std::strerror(errno));
+    fail(Exit::io, "{}: cannot be read: {}", path_, reason(errno));
   }
 }
 

@@ -4,6 +4,7 @@
 #include "difference.h"
 #include "dump/dump.h"
 #include "dump/file.h"
+#include "dump/file_system.h"
 #include "dump/sequence.h"
 #include "dump/text.h"
 #include "geometry_flags.h"
@@ -69,9 +70,9 @@ NumberOptions with_gaps(NumberOptions numbers) {
 std::string source_of(const fs::path& file) {
   for (const char* ending : {".exr", ".png", ".tif", ".tiff", ".dpx"}) {
     const fs::path other = fs::path(file).replace_extension(ending);
-    if (fs::exists(other)) return other.string();
+    if (fs::exists(other)) return path_text(other);
   }
-  return file.string();
+  return path_text(file);
 }
 
 /// Pairs files of the same name, and else of the same texture and frame, because folders may hold
@@ -81,12 +82,15 @@ std::vector<Pair> pairs_of_folders(const std::string& left, const std::vector<Se
   using Key = std::pair<std::string, std::uint64_t>;
   std::map<Key, Pair> pairs;
   std::set<std::string> both;
-  const auto name_of = [](const std::string& path) { return fs::path(path).filename().string(); };
+  const auto name_of = [](const std::string& path) {
+    return path_text(native_path(path).filename());
+  };
   for (const auto& [own, other] : {std::pair(left, right), std::pair(right, left)}) {
     for (const Sequence& sequence : own == left ? lefts : rights) {
       for (const FrameFile& file : sequence.frames) {
-        const std::string name = name_of(file.path), there = (fs::path(other) / name).string();
-        const bool same = fs::exists(there);
+        const std::string name = name_of(file.path),
+                          there = path_text(native_path(other) / native_path(name));
+        const bool same = fs::exists(native_path(there));
         if (same && !both.insert(name).second) continue;
         Pair& pair = pairs[{same ? name : sequence.name, same ? kOneName : file.frame}];
         (own == left ? pair.left : pair.right) = file.path;
@@ -97,8 +101,10 @@ std::vector<Pair> pairs_of_folders(const std::string& left, const std::vector<Se
   }
   std::vector<Pair> all;
   for (auto& [key, pair] : pairs) {
-    if (pair.left.empty()) pair.left = source_of(fs::path(left) / name_of(pair.right));
-    if (pair.right.empty()) pair.right = source_of(fs::path(right) / name_of(pair.left));
+    if (pair.left.empty())
+      pair.left = source_of(native_path(left) / native_path(name_of(pair.right)));
+    if (pair.right.empty())
+      pair.right = source_of(native_path(right) / native_path(name_of(pair.left)));
     all.push_back(pair);
   }
   std::ranges::sort(all, {}, &Pair::left);
@@ -109,10 +115,10 @@ std::vector<Pair> pairs_of_folders(const std::string& left, const std::vector<Se
 bool are_folders(const CompareOptions& options) {
   for (const std::string& path : {options.left, options.right}) {
     require_exists(path);
-    if (!fs::is_directory(path)) (void)require_image_kind(path);
+    if (!fs::is_directory(native_path(path))) (void)require_image_kind(path);
   }
-  const bool left_directory = fs::is_directory(options.left);
-  if (left_directory != fs::is_directory(options.right)) {
+  const bool left_directory = fs::is_directory(native_path(options.left));
+  if (left_directory != fs::is_directory(native_path(options.right))) {
     fail(Exit::usage, "compare needs two files or two directories");
   }
   return left_directory;
@@ -215,9 +221,9 @@ Exit compare(const CompareOptions& options, const Cli& cli) {
   Progress progress("comparing", pairs.size(), cli);
   for (const Pair& pair : pairs) {
     progress.step();
-    const bool both = fs::exists(pair.left) && fs::exists(pair.right);
+    const bool both = fs::exists(native_path(pair.left)) && fs::exists(native_path(pair.right));
     if (pairs.size() > 1 && !both) {
-      const std::string& missing = fs::exists(pair.left) ? pair.right : pair.left;
+      const std::string& missing = fs::exists(native_path(pair.left)) ? pair.right : pair.left;
       same = false;
       if (options.format == "text") print("{} does not exist\n", missing);
       json.push_back({{"left", pair.left}, {"right", pair.right}, {"missing", missing}});

@@ -6,6 +6,7 @@
 #include "dump/directory.h"
 #include "dump/dump.h"
 #include "dump/file.h"
+#include "dump/file_system.h"
 #include "dump/geometry_attributes.h"
 #include "dump/sequence.h"
 #include "dump/text.h"
@@ -120,7 +121,7 @@ Dump crop_dump(const Dump& from, const Grid& origin, const Grid& size, const std
 std::string output_path(const CropOptions& options, const Sequence& sequence, std::uint64_t frame) {
   FileNames names = sequence.names;
   names.extension = written_extension(sequence);
-  return (std::filesystem::path(options.output) / names.of(sequence.name, frame)).string();
+  return path_text(native_path(options.output) / native_path(names.of(sequence.name, frame)));
 }
 
 /// Refuses outputs that would destroy a file, before any is written.

@@ -12,6 +12,7 @@
 #include "dump/directory.h"
 #include "dump/dump.h"
 #include "dump/file.h"
+#include "dump/file_system.h"
 #include "dump/texture_file.h"
 
 #include <algorithm>
@@ -67,7 +68,7 @@ void check_numbered(const StoredTexture& texture, std::optional<std::uint64_t>& 
 /// Throws if a file that lacks something would replace one that may be its only original.
 void keep_original(const std::string& path, const StoredTexture& texture, const Dump& image) {
   const std::string lacks = texture.lacks();
-  if (lacks.empty() || !std::filesystem::exists(path)) return;
+  if (lacks.empty() || !std::filesystem::exists(native_path(path))) return;
   std::string unread;
   try {
     const Dump old = read_dump(path, hints_of(texture.info));
@@ -164,8 +165,8 @@ Exit decode(const DecodeOptions& options, const Cli& cli) {
         const StoredTexture& texture = input.textures()[images.front()];
         check_numbered(texture, written[images.front()], frame, input.path());
         tasks.emplace_back([&] {
-          const auto path = std::filesystem::path(options.output) / texture.file_name(frame);
-          write_file_of(input, images, path.string(), inputs, options.overwrite);
+          const auto path = native_path(options.output) / native_path(texture.file_name(frame));
+          write_file_of(input, images, path_text(path), inputs, options.overwrite);
           ++files;
         });
       }

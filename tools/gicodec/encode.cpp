@@ -10,6 +10,7 @@
 #include "dump/cure.h"
 #include "dump/dump.h"
 #include "dump/file.h"
+#include "dump/file_system.h"
 #include "dump/sequence.h"
 #include "encode_volumes.h"
 #include "geometry_flags.h"
@@ -309,7 +310,7 @@ void remark_inactive(const std::vector<Lane>& lanes) {
 Exit encode(const EncodeOptions& options, const Cli& cli) {
   // First, because the shell expands -o *.exr to the first dump as output.
   check_output(options.output, {}, Existing::container);
-  if (std::filesystem::path(options.output).has_extension() && image_kind(options.output)) {
+  if (native_path(options.output).has_extension() && image_kind(options.output)) {
     fail(Exit::usage, "-o {}: is named like a dump; a container is named FILE.gic", options.output);
   }
   for (const std::string& path : options.inputs) require_exists(path);

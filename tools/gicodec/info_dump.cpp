@@ -4,6 +4,7 @@
 #include "common/volume_words.h"
 #include "dump/dump.h"
 #include "dump/error.h"
+#include "dump/file_system.h"
 #include "dump/text.h"
 
 #include <fmt/format.h>
@@ -18,7 +19,7 @@ std::string command_for(const std::string& path, const GeometryFlags& flags) {
   const auto named = [](const std::string& name) {
     return shell_word(name.starts_with('-') ? "./" + name : name);
   };
-  const std::string stem = std::filesystem::path(path).stem().string();
+  const std::string stem = path_text(native_path(path).stem());
   return fmt::format("gicodec encode -o {} {}{}", named(stem + ".gic"), named(path),
                      flags_text(flags));
 }
@@ -40,7 +41,7 @@ std::string value_text(const Attribute& attribute) {
 }  // namespace
 
 bool is_dump(const std::string& path) {
-  return path != "-" && !is_container_file(path) && std::filesystem::path(path).has_extension() &&
+  return path != "-" && !is_container_file(path) && native_path(path).has_extension() &&
          image_kind(path).has_value();
 }
 

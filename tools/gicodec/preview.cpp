@@ -7,6 +7,7 @@
 #include "common/volume_words.h"
 #include "dump/dump.h"
 #include "dump/file.h"
+#include "dump/file_system.h"
 #include "dump/sequence.h"
 #include "dump/text.h"
 #include "geometry_flags.h"
@@ -54,10 +55,10 @@ void note_missing(const ContainerInput& input, bool allowed) {
 
 /// Throws for an extension other than .png.
 void check_picture_name(const std::string& path) {
-  const std::string extension = lower_case(std::filesystem::path(path).extension().string());
+  const std::string extension = lower_case(path_text(native_path(path).extension()));
   if (extension.empty() || extension == ".png") return;
   fail(Exit::usage, "{}: pictures are written as PNG; name it {}", path,
-       std::filesystem::path(path).replace_extension(".png").string());
+       path_text(native_path(path).replace_extension(".png")));
 }
 
 /// How informative a picture of a texture is: first whether its kind has a preview, then the bytes

@@ -19,7 +19,7 @@ inline constexpr Price kPriceOfSymbol = 6 * kBit;
 
 /// Logarithm to base 2, by straight lines between powers of two.
 constexpr Price log2_of(std::uint64_t n) {
-  const auto whole = static_cast<unsigned>(std::bit_width(n)) - 1;
+  const auto whole = static_cast<unsigned>(std::bit_width(n | 1)) - 1;
   const std::uint64_t rest = whole > 8 ? n >> (whole - 8) : n << (8 - whole);
   return whole * kBit + static_cast<Price>(rest) - kBit;
 }

@@ -58,7 +58,7 @@ GICODEC_INLINE I16 decode_token_lanes(const RoleTables& tables, I16 contexts, st
   store(value, contexts);
   std::uint32_t asking = 0;
   for (std::uint32_t rest = active; rest != 0; rest &= rest - 1) {
-    const int l = __builtin_ctz(rest);
+    const int l = lowest_bit(rest);
     const unsigned distribution = tables.map[value[l]];
     std::uint32_t x = in.low[l] | static_cast<std::uint32_t>(in.high[l]) << 16;
     const std::uint32_t slot = x % kProbabilityScale;
@@ -74,7 +74,7 @@ GICODEC_INLINE I16 decode_token_lanes(const RoleTables& tables, I16 contexts, st
     in.high[l] = static_cast<std::uint16_t>(x >> 16);
   }
   for (; asking != 0; asking &= asking - 1) {
-    const int l = __builtin_ctz(asking);
+    const int l = lowest_bit(asking);
     std::uint32_t x = in.low[l] | static_cast<std::uint32_t>(in.high[l]) << 16;
     value[l] = static_cast<std::uint16_t>(value[l] + (x & ((1U << bits[l]) - 1)));
     x >>= bits[l];
@@ -223,7 +223,7 @@ void price_steps(const Step* begin, const Step* end, unsigned place, const RoleT
   for (const Step* s = begin; s != end; ++s) {
     if (s->repeat != 0 || s->place != place) continue;
     for (std::uint32_t rest = s->active; rest != 0; rest &= rest - 1) {
-      const int l = __builtin_ctz(rest);
+      const int l = lowest_bit(rest);
       cost[l] += static_cast<std::uint32_t>(
           tables.price[tables.map[s->context[l]]][find_bin(s->value[l])]);
     }

@@ -46,7 +46,7 @@ GICODEC_INLINE void replace_absent(const Group& g, const std::uint16_t* here, co
 /// The energy of a low plane: residuals around, those of the first low plane here, and whether the
 /// high half of its component changed, after which nothing predicts it.
 GICODEC_INLINE I16 low_energy(const PlaneCoding& c, unsigned p, std::size_t at, I16 energy) {
-  const unsigned first = static_cast<unsigned>(__builtin_ctz(c.group.low));
+  const unsigned first = static_cast<unsigned>(lowest_bit(c.group.low));
   I16 sum = shift_right<4>(energy);
   sum = sub(sum, shift_right<2>(sum));
   const I16 high = min_u(magnitude(load(c.residual + (p - 1) * c.plane_size + at)), set(3));

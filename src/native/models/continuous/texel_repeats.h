@@ -37,7 +37,7 @@ class TexelRepeats {
   Vector<std::uint32_t> last_seen_;  ///< a texel, by the hash of those before it
   std::size_t match_ = 0;            ///< what the next texel may repeat
   std::uint32_t match_length_ = 0;   ///< texels that did; 0: no match
-  std::array<BitMixer, kSources * kSources> by_source_;
+  std::array<BitMixer, std::size_t{kSources} * kSources> by_source_;
   std::array<BitMixer, kPatterns> by_pattern_;
 };
 
