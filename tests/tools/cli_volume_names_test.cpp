@@ -51,7 +51,7 @@ TEST_F(CliVolumeNames, TexturesOfAnyName) {
   const std::map<std::string, std::string> stems{
       {"sky/light", "sky%2Flight"},
       {"sky%2Flight", "sky%252Flight"},
-      {"..", kWindows ? "%2E%2E" : "%2E."},
+      {"..", "%2E."},
       {"a\nb", "a%0Ab"},
       {std::string("\0", 1), "%00"},
       {"\u202Eback", "%E2%80%AEback"},

@@ -150,9 +150,8 @@ std::string as_file_name(std::string_view text, std::size_t most, std::string_vi
     const char first = rest[0];
     const bool hides = part.empty() && first == '.';
     const bool windows_refuses =
-        kWindows &&
-        (kWindowsHasNot.find(first) != std::string_view::npos ||
-         (part.empty() && is_device(text)) || (rest.size() == 1 && (first == ' ' || first == '.')));
+        kWindows && (kWindowsHasNot.find(first) != std::string_view::npos ||
+                     (part.empty() && is_device(text)) || (rest.size() == 1 && first == ' '));
     if (shown == 0 || first == '/' || hides || windows_refuses ||
         also.find(first) != std::string_view::npos || reads_as_escape(rest)) {
       part += fmt::format("%{:02X}", static_cast<unsigned char>(first));
