@@ -10,13 +10,6 @@
 namespace gicodec::tools {
 namespace {
 
-using Arguments = std::vector<std::string>;
-
-Arguments operator+(Arguments left, const Arguments& right) {
-  left.insert(left.end(), right.begin(), right.end());
-  return left;
-}
-
 class CliRoundTrip : public testing::TestWithParam<Arguments> {};
 
 TEST_P(CliRoundTrip, FilesComeBackByteForByte) {

@@ -16,11 +16,6 @@
 namespace gicodec::tools {
 namespace {
 
-std::string text_of(const std::string& path) {
-  const auto bytes = file_bytes(path);
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
 /// Most memory of a running process in kilobytes. What the system tells after its end counts this
 /// program's own as well, from which it was forked.
 std::optional<long> peak_of(pid_t process) {
@@ -129,7 +124,7 @@ Outcome Program::run_in(const Circumstances& circumstances,
   if (terminal >= 0) close(terminal);
   const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   const auto text = [](const std::string& path) {
-    return std::filesystem::exists(path) ? text_of(path) : std::string();
+    return std::filesystem::exists(path) ? file_text(path) : std::string();
   };
   return {code, text(out), text(err), peak};
 }

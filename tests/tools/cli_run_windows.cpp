@@ -10,11 +10,6 @@
 namespace gicodec::tools {
 namespace {
 
-std::string text_of(const std::string& path) {
-  const auto bytes = file_bytes(path);
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
 /// A word as programs take it from a command line.
 std::string quoted(const std::string& word) {
   if (!word.empty() && word.find_first_of(" \t\"") == std::string::npos) return word;
@@ -74,7 +69,7 @@ Outcome Program::run_in(const Circumstances& circumstances,
   GetExitCodeProcess(process.hProcess, &code);
   CloseHandle(process.hThread);
   CloseHandle(process.hProcess);
-  return {static_cast<int>(code), text_of(out), text_of(err)};
+  return {static_cast<int>(code), file_text(out), file_text(err)};
 }
 
 }  // namespace gicodec::tools

@@ -18,6 +18,12 @@ inline constexpr bool kWindows = false;
 #endif
 inline constexpr bool kWithImages = !kWindows;  ///< PNG, TIFF and DPX
 
+using Arguments = std::vector<std::string>;
+[[nodiscard]] inline Arguments operator+(Arguments left, const Arguments& right) {
+  left.insert(left.end(), right.begin(), right.end());
+  return left;
+}
+
 struct Outcome {
   int exit = -1;  ///< exit code; 128 + signal if the program was killed
   std::string out;

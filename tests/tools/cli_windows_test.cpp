@@ -11,13 +11,6 @@
 namespace gicodec::tools {
 namespace {
 
-using Arguments = std::vector<std::string>;
-
-Arguments operator+(Arguments left, const Arguments& right) {
-  left.insert(left.end(), right.begin(), right.end());
-  return left;
-}
-
 TEST(CliWindows, NamesOfAnyLanguageAndLength) {
   if (!long_paths()) GTEST_SKIP() << "the system allows no long paths";
   const Program program;

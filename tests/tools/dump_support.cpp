@@ -103,6 +103,11 @@ std::vector<std::byte> file_bytes(const std::string& path) {
   return {bytes.begin(), bytes.end()};
 }
 
+std::string file_text(const std::string& path) {
+  const auto bytes = file_bytes(path);
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
 void write_bytes(const std::string& path, std::span<const std::byte> bytes) {
   std::ofstream file(native_path(path), std::ios::binary | std::ios::trunc);
   file.write(reinterpret_cast<const char*>(bytes.data()),

@@ -48,6 +48,7 @@ class TemporaryDirectory {
 [[nodiscard]] std::vector<Dump> random_images(Format format, const TextureHead& head);
 
 [[nodiscard]] std::vector<std::byte> file_bytes(const std::string& path);
+[[nodiscard]] std::string file_text(const std::string& path);
 void write_bytes(const std::string& path, std::span<const std::byte> bytes);
 
 /// The error that reading a file gives; nothing if it can be read.

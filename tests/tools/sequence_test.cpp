@@ -228,7 +228,10 @@ TEST(Sequence, LinksToNothingAreLeftOut) {
   std::ofstream(directory.path("a.exr")) << "x";
   std::error_code error;
   std::filesystem::create_symlink("nowhere", directory.path("b.exr"), error);
+#if defined(_WIN32)
   if (error) GTEST_SKIP() << "no links: " << error.message();
+#endif
+  ASSERT_FALSE(error) << error.message();
   SequenceRemarks remarks;
   EXPECT_EQ(group_sequences({directory.path("")}, {}, &remarks).size(), 1U);
   ASSERT_EQ(remarks.left_out.size(), 1U);
