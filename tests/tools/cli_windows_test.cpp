@@ -12,11 +12,11 @@ namespace gicodec::tools {
 namespace {
 
 TEST(CliWindows, NamesOfAnyLanguageAndLength) {
-  if (!long_paths()) GTEST_SKIP() << "the system allows no long paths";
+  const std::size_t long_name = long_paths() ? 120 : 20;
   const Program program;
   const Arguments dumps = program.make_dumps(2);
-  const std::string folder =
-      program.path("\u65E5\u672C/" + std::string(120, 'l') + "/" + std::string(120, 'm'));
+  const std::string folder = program.path("\u65E5\u672C/" + std::string(long_name, 'l') + "/" +
+                                          std::string(long_name, 'm'));
   program.succeed(Arguments{"encode", "-o", "gr\u00F6\u00DFe.gic"} + dumps);
   program.succeed({"decode", "gr\u00F6\u00DFe.gic", "-o", folder});
   for (const std::string& name : program.files("in")) {
