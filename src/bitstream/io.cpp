@@ -5,8 +5,9 @@
 #include <io.h>
 #include <sys/stat.h>
 #else
-#if defined(__linux__)
+#if __has_include(<stdio_ext.h>)  // glibc and musl
 #include <stdio_ext.h>
+#define GICODEC_STDIO_EXT
 #endif
 #include <sys/stat.h>
 #include <unistd.h>
@@ -50,7 +51,7 @@ bool cut(std::FILE* file, std::int64_t size) {
   return ftruncate(fileno(file), static_cast<off_t>(size)) == 0;
 }
 void drop_unwritten(std::FILE* file) {
-#if defined(__linux__)
+#if defined(GICODEC_STDIO_EXT)
   __fpurge(file);
 #else
   fpurge(file);

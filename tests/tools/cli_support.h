@@ -1,6 +1,7 @@
 // Runs the built program.
 #pragma once
 
+#include "dump/file_system.h"
 #include "tools/dump_support.h"
 
 #include <csignal>
@@ -11,11 +12,6 @@
 
 namespace gicodec::tools {
 
-#if defined(_WIN32)
-inline constexpr bool kWindows = true;
-#else
-inline constexpr bool kWindows = false;
-#endif
 inline constexpr bool kWithImages = !kWindows;  ///< PNG, TIFF and DPX
 
 using Arguments = std::vector<std::string>;

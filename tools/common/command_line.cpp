@@ -1,5 +1,7 @@
 #include "common/command_line.h"
 
+#include "dump/file_system.h"
+
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
@@ -242,7 +244,7 @@ std::optional<Exit> Command::parse(int argc, const char* const* argv) {
       fail(Exit::usage, "{} is given more than once; see --help", what.substr(0, twice));
     if (error.get_exit_code() != 0) fail(Exit::usage, "{}; see --help", error.what());
     app_->exit(error);
-    const bool read_enough = !std::cout.flush() && errno == EPIPE;  // "--help | head"
+    const bool read_enough = !std::cout.flush() && reader_ended(errno);  // "--help | head"
     if (!std::cout && !read_enough) fail(Exit::io, "standard output: cannot be written");
     return Exit::ok;
   }

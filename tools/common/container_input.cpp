@@ -14,7 +14,6 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
 #include <utility>
 
 namespace gicodec::tools {
@@ -45,11 +44,10 @@ ContainerInput::ContainerInput(const std::string& path, const DecoderFlags& deco
       hevc_(hevc_decoder(decoding)),
       file_(path == "-" ? stdin : open_input(path)) {
   if (!file_) fail(Exit::io, "{}: cannot be opened: {}", path_, reason(errno));
-  std::error_code error;
-  if (path != "-" && std::filesystem::is_directory(native_path(path), error))
+  const auto state = path == "-" ? std::nullopt : state_of(path.c_str());
+  if (state && state->kind == FileState::Kind::directory)
     fail(Exit::io, "{}: is a directory, not a container", path_);
-  if (std::filesystem::is_regular_file(native_path(path), error) &&
-      std::filesystem::file_size(native_path(path), error) == 0) {
+  if (state && state->kind == FileState::Kind::regular && state->size == 0) {
     fail(Exit::bad_input,
          "{}: is empty: a recording that was ended before its first packet, or a copy that failed; "
          "get it again",

@@ -3,6 +3,7 @@
 
 #include "backend_flags.h"
 #include "dump/error.h"
+#include "dump/file_system.h"
 #include "stored_texture.h"
 
 #include <gicodec/gicodec.h>
@@ -93,11 +94,6 @@ class ContainerInput {
   }
 
  private:
-  struct Close {
-    void operator()(std::FILE* file) const {
-      if (file != stdin) std::fclose(file);
-    }
-  };
   /// A Source that counts the bytes read.
   class CountingSource final : public Source {
    public:
@@ -131,7 +127,7 @@ class ContainerInput {
   std::string path_;
   DecoderFlags decoding_;
   std::unique_ptr<const Backend> hevc_;
-  std::unique_ptr<std::FILE, Close> file_;
+  OwnedFile file_;
   std::unique_ptr<CountingSource> source_;
   std::optional<ContainerPlayer> player_;
   std::vector<StoredTexture> textures_;

@@ -24,11 +24,6 @@ constexpr std::size_t kNumber = 10;     ///< digits of a frame's number for whic
 constexpr std::size_t kHash = 18;       ///< bytes of %~ and the hash
 constexpr const char* kNothing = "%-";  ///< stands for an empty text
 constexpr std::string_view kSidecar = ".json";
-#if defined(_WIN32)
-constexpr bool kWindows = true;
-#else
-constexpr bool kWindows = false;
-#endif
 /// What no name has there.
 constexpr std::string_view kWindowsHasNot = "\\:*?\"<>|";
 

@@ -6,9 +6,7 @@
 #include "stored_texture.h"
 #include "volume_words.h"
 
-#include <filesystem>
 #include <set>
-#include <system_error>
 #include <utility>
 
 namespace gicodec::tools {
@@ -102,9 +100,7 @@ std::vector<StoredTexture> inspect(const Sequence& sequence, Hints hints) {
       require_same_shape(textures[i].info, infos[i], first.path, file.path);
       add_changes(textures[i], infos[i].attributes, file.frame);
     }
-    std::error_code error;
-    const auto bytes = std::filesystem::file_size(native_path(file.path), error);
-    if (!error) textures.front().file_bytes += bytes;
+    textures.front().file_bytes += size_of_file(file.path).value_or(0);
   }
   return textures;
 }

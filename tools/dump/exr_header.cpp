@@ -12,11 +12,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <filesystem>
-#include <memory>
 #include <string>
 #include <string_view>
-#include <system_error>
 
 namespace gicodec::tools {
 namespace {
@@ -69,10 +66,6 @@ bool is_preview(std::string_view bytes) {
   std::memcpy(size, bytes.data(), sizeof size);
   return std::uint64_t{size[0]} * size[1] == (bytes.size() - sizeof size) / 4;
 }
-
-struct Close {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
 
 class HeaderWalk {
  public:
@@ -302,7 +295,7 @@ class HeaderWalk {
   }
 
   const std::string& path_;
-  std::unique_ptr<std::FILE, Close> file_;
+  OwnedFile file_;
   std::int64_t walked_ = 0;
   std::size_t attributes_ = 0;
   ExrPart part_;
@@ -344,9 +337,9 @@ std::int64_t exr_samples(std::int64_t first, std::int64_t last, std::int64_t ste
 
 void check_image_bytes(std::uint64_t bytes, std::uint64_t ratio, const std::string& path) {
   constexpr std::uint64_t kFree = std::uint64_t{64} << 20;
-  std::error_code error;
-  const auto size = std::filesystem::file_size(native_path(path), error);
-  if (error || bytes <= kFree || (bytes / ratio <= size && bytes <= kMaxImageBytes)) return;
+  if (bytes <= kFree) return;
+  const std::uint64_t size = size_of_file(path).value_or(0);
+  if (bytes / ratio <= size && bytes <= kMaxImageBytes) return;
   fail(Exit::bad_input,
        "{}: claims {} bytes of samples; its {} bytes hold {} at most, and images may have {}", path,
        bytes, size, size * ratio, kMaxImageBytes);

@@ -8,7 +8,6 @@
 #include <array>
 #include <cerrno>
 #include <filesystem>
-#include <memory>
 #include <mutex>
 #include <random>
 #include <system_error>
@@ -20,11 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 
 using enum FileState::Kind;
-
-struct Close {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
-using Opened = std::unique_ptr<std::FILE, Close>;
 
 bool is_container(std::FILE* file) {
   std::array<char, 4> magic{};
@@ -112,7 +106,7 @@ void require_place(const std::string& path) {
 bool is_container_file(const std::string& path) {
   const auto state = state_of(path.c_str());
   if (!state || state->kind != regular) return false;
-  const Opened file(open_input(path));
+  const OwnedFile file(open_input(path));
   return file && is_container(file.get());
 }
 
@@ -125,7 +119,7 @@ void finish_standard_output() {
   const int flushed = std::fflush(stdout) == 0 ? 0 : errno;
   if (flushed == 0 && std::ferror(stdout) == 0) return;
   const int error = output_error() != 0 ? output_error() : flushed;
-  if (error == EPIPE) return;
+  if (reader_ended(error)) return;
   fail(Exit::io, "standard output: cannot be written: {}", reason(error));
 }
 
@@ -133,7 +127,7 @@ void check_report(const std::string& path, bool (*is_report)(std::string_view he
   const auto state = state_of(path.c_str());
   if (!state || state->kind != regular) return;
   std::array<char, 64> head{};
-  const Opened file(open_input(path));
+  const OwnedFile file(open_input(path));
   const auto size = file ? read_head(file.get(), head) : std::nullopt;
   if (size && (*size == 0 || is_report({head.data(), *size}))) return;
   fail(Exit::usage, "{}: holds something else and would be overwritten; name another file", path);
@@ -229,7 +223,7 @@ std::FILE* AtomicFile::open_hidden() {
 std::FILE* AtomicFile::open_partial() {
   temporary_ = target_ + ".partial";
   kept_ = true;
-  Opened file(open_locked(temporary_, target_));
+  OwnedFile file(open_locked(temporary_, target_));
   if (!file && errno == EWOULDBLOCK) {
     fail(Exit::io, "{}: another program is writing it", temporary_);
   }

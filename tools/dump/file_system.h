@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -14,6 +15,20 @@
 #include <vector>
 
 namespace gicodec::tools {
+
+#if defined(_WIN32)
+inline constexpr bool kWindows = true;
+#else
+inline constexpr bool kWindows = false;
+#endif
+
+/// Closes a file, but not standard input.
+struct CloseFile {
+  void operator()(std::FILE* file) const noexcept {
+    if (file != stdin) std::fclose(file);
+  }
+};
+using OwnedFile = std::unique_ptr<std::FILE, CloseFile>;
 
 /// A path for the standard library.
 [[nodiscard]] std::filesystem::path native_path(std::string_view path);
@@ -25,6 +40,8 @@ namespace gicodec::tools {
 
 /// The reason of an errno, for messages.
 [[nodiscard]] std::string reason(int error);
+/// True of the errno of writing to standard output after its reader ended: "gicodec info | head".
+[[nodiscard]] bool reader_ended(int error);
 
 struct FileState {
   enum class Kind : std::uint8_t { regular, directory, link, character, other };
@@ -43,6 +60,12 @@ enum class Links : std::uint8_t { follow, show };
 /// nullopt if nothing has that name or it cannot be examined.
 [[nodiscard]] std::optional<FileState> state_of(const char* path, Links links = Links::follow);
 [[nodiscard]] std::optional<FileState> state_of(std::FILE* file);
+/// Bytes of a regular file; nullopt if there is none of that name.
+[[nodiscard]] inline std::optional<std::uint64_t> size_of_file(const std::string& path) {
+  const auto state = state_of(path.c_str());
+  if (!state || state->kind != FileState::Kind::regular) return std::nullopt;
+  return state->size;
+}
 
 /// The names of what a folder holds; nullopt if it cannot be listed.
 [[nodiscard]] std::optional<std::vector<std::string>> names_in(const std::string& folder);

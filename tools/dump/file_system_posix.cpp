@@ -85,6 +85,8 @@ std::string folded(const std::string& name) { return name; }
 
 std::string reason(int error) { return std::strerror(error); }
 
+bool reader_ended(int error) { return error == EPIPE; }
+
 std::string resolved(const std::string& link) {
   std::error_code error;
   return std::filesystem::weakly_canonical(link, error);

@@ -164,6 +164,11 @@ std::string reason(int error) {
   return std::strerror(error);
 }
 
+// The C library knows ERROR_BROKEN_PIPE; ERROR_NO_DATA becomes EINVAL.
+bool reader_ended(int error) {
+  return error == EPIPE || (error == EINVAL && GetFileType(handle_of(stdout)) == FILE_TYPE_PIPE);
+}
+
 // The standard library of mingw knows no links.
 std::string resolved(const std::string& link) {
   const HANDLE file =
@@ -304,8 +309,13 @@ bool rename_file(const std::string& from, const std::string& to, bool replace) {
     if (cause != ERROR_SHARING_VIOLATION && cause != ERROR_ACCESS_DENIED) break;
     Sleep(50);
   }
-  // What a program holds open is refused in either way.
-  if (errno == EACCES && exists) errno = ETXTBSY;
+  if (errno != EACCES || !exists) return false;
+  // What a program holds open is refused so too.
+  const HANDLE deletable = open_handle(to.c_str(), DELETE, kShareAll, OPEN_EXISTING);
+  if (deletable != INVALID_HANDLE_VALUE) {
+    CloseHandle(deletable);
+    errno = ETXTBSY;
+  }
   return false;
 }
 

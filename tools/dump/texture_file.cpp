@@ -122,9 +122,7 @@ std::pair<std::string, std::string> missing_sidecar(const std::string& path, con
   const Attribute* where = find_attribute(info.attributes, kRawSidecar);
   const bool shared = where != nullptr && where->value == "shared";
   std::string sidecar = raw_sidecar_path(path, shared);
-  std::error_code error;
-  if (!text.empty() && std::filesystem::file_size(native_path(sidecar), error) == text.size() &&
-      !error) {
+  if (!text.empty() && size_of_file(sidecar) == text.size()) {
     TextureFile old(sidecar);
     if (std::ranges::equal(old.read(0, text.size()), std::as_bytes(std::span(text)))) text.clear();
   }

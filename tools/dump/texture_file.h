@@ -4,12 +4,12 @@
 #pragma once
 
 #include "dump/dump.h"
+#include "dump/file_system.h"
 #include "dump/supercompression.h"
 
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -89,11 +89,8 @@ class TextureFile {
   [[nodiscard]] std::vector<std::byte> read(std::uint64_t offset, std::size_t bytes);
 
  private:
-  struct Close {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
   std::string path_;
-  std::unique_ptr<std::FILE, Close> file_;
+  OwnedFile file_;
   std::uint64_t size_ = 0;
 };
 
