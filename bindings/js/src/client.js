@@ -1,5 +1,6 @@
 // The streaming protocol's client, without a transport: messages are bytes.
 import {placeOf, readTexture, texturesOf} from './description.js';
+import {checkOptions} from './error.js';
 import {bytesOf} from './instance.js';
 import {
   END, OK, clientOptions, clientState, geometry as geometryStruct, limits as limitsStruct, viewpoint,
@@ -74,6 +75,10 @@ export class Client {
 
   /** @internal */
   static async create(module, {delivery = 'unicast', token = '', limits, ...options} = {}) {
+    checkOptions(options, ['budgetBlocks', 'budgetBytes', 'delivery', 'token', 'limits']);
+    if (!DELIVERIES.includes(delivery)) {
+      throw new RangeError(`there is no delivery "${delivery}": ${DELIVERIES.join(', ')} are`);
+    }
     const instance = await module.create();
     const client = new Client();
     client.#instance = instance;

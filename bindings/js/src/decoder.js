@@ -1,13 +1,15 @@
 // Decoders of packets: of one texture, and of all of a volume.
 import {complete, createVolume, placeOf, readTexture, texturesOf, withDesc} from './description.js';
-import {GicodecError} from './error.js';
+import {GicodecError, checkOptions} from './error.js';
 import {bytesOf} from './instance.js';
 import {INVALID_ARGUMENT, decoderOptions, limits as limitsStruct, packetInfo} from './interface.js';
 
 const PACKET_TYPES = ['keyframe', 'delta', 'intra', 'snapshot', 'catch-up', 'intra catch-up'];
 
 /** The struct of a decoder's options, and what it points to. */
-function withOptions(memory, {limits, firstTexture = 0}) {
+function withOptions(memory, options) {
+  checkOptions(options, ['limits', 'firstTexture']);
+  const {limits, firstTexture = 0} = options;
   return memory.struct(decoderOptions,
       {textureId: firstTexture, limits: limits && memory.struct(limitsStruct, limits)});
 }

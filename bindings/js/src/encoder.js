@@ -2,19 +2,22 @@
 import {
   complete, createVolume, formatNumber, placeOf, readDesc, readTexture, texelsOf, texturesOf, withDesc,
 } from './description.js';
+import {checkOptions} from './error.js';
 import {bytesOf} from './instance.js';
 import {
   BUFFER_TOO_SMALL, SELECT_ALL, SELECT_CHANGED, SELECT_LIST, constView, encoderOptions, textureDesc,
 } from './interface.js';
 
 /** The struct of an encoder's options, and what it points to. */
-function withOptions(memory, {preset, maxError = 0, gop, firstTexture = 0, ...rest}) {
+function withOptions(memory, options) {
+  checkOptions(options, ['preset', 'gop', 'chunk', 'maxError', 'firstTexture']);
+  const {preset, maxError = 0, gop, firstTexture = 0, chunk} = options;
   if (preset !== undefined && !PRESETS.includes(preset)) {
     throw new RangeError(`there is no preset "${preset}": ${PRESETS.join(', ')} are`);
   }
   const list = Array.isArray(maxError) || ArrayBuffer.isView(maxError);
   return memory.struct(encoderOptions, {
-    ...rest, textureId: firstTexture, preset: preset && memory.text(preset),
+    chunk, textureId: firstTexture, preset: preset && memory.text(preset),
     gop: gop === 0 ? 0xFFFFFFFF : gop, maxError: list ? 0 : maxError,
     maxErrors: list ? memory.put(Float32Array.from(maxError)) : 0, maxErrorCount: list ? maxError.length : 0,
   });
@@ -129,6 +132,7 @@ export class VolumeEncoder {
   /** The packets of an update, in the order in which decoders must apply them. */
   encode(textures, blocks = 'changed') {
     const instance = this.#instance;
+    for (const name of Object.keys(textures)) placeOf(this.textures, name);
     instance.with((memory) => {
       const views = memory.list(constView, this.textures.map((desc) => {
         if (!textures[desc.name]) throw new TypeError(`the volume has a texture "${desc.name}", which is missing`);

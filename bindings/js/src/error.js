@@ -5,6 +5,13 @@ export function checkResponse({ok, status, statusText, url}) {
   if (!ok) throw new TypeError(`the server answers ${status} ${statusText} for ${url || 'the request'}`);
 }
 
+/** Throws for an option that does not exist. */
+export function checkOptions(options, names) {
+  for (const name of Object.keys(options)) {
+    if (!names.includes(name)) throw new TypeError(`there is no option ${name}: there are ${names.join(', ')}`);
+  }
+}
+
 /** What a call of the library, or damaged bytes, lead to. */
 export class GicodecError extends Error {
   /**

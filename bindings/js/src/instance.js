@@ -1,8 +1,10 @@
 // An instance of a WebAssembly module of the library, with memory of its own, and what lies in it.
 // Views of its memory are made anew after each call, which may move it.
 import {GicodecError} from './error.js';
-import {OK, OUT_OF_MEMORY, STATUS_NAMES, view} from './interface.js';
+import {LIMIT_EXCEEDED, OK, OUT_OF_MEMORY, STATUS_NAMES, view} from './interface.js';
 
+/** Limits that large scenes meet first. */
+const MEMORY = ['maxTotalBytes', 'maxTextureBytes', 'maxWorkBytes'];
 const decoder = new TextDecoder();
 const encoder = new TextEncoder();
 
@@ -69,7 +71,8 @@ export class Instance {
 
   error(status, what = '') {
     const text = this.text(this.call('status_text', status)) || STATUS_NAMES[status];
-    return new GicodecError(status, what ? `${what}: ${text}` : text);
+    const cure = status === LIMIT_EXCEEDED ? `; the option limits allows more: {${MEMORY.join(', ')}}` : '';
+    return new GicodecError(status, `${what ? `${what}: ` : ''}${text}${cure}`);
   }
 
   /** A view that is valid until the next call. */
@@ -161,12 +164,15 @@ export class Instance {
       if (list.length > count) throw new RangeError(`${name} has at most ${count} entries`);
       list.forEach((one, i) => {
         if (typeof type === 'object') return this.write(type, at + offset + i * type.size, one);
-        const size = Number(type.match(/\d+/)[0]) / 8;
-        const number = type === 'BigUint64' ? BigInt(one) : Number(one);
-        if (Number.isNaN(number) && !type.startsWith('Float')) {
-          throw new TypeError(`${name} is ${one}, which is no number`);
+        const [, kind, bits] = type.match(/(\D+)(\d+)/);
+        const number = Number(one);
+        if (kind !== 'Float') {
+          const least = kind === 'Int' ? -(2 ** (bits - 1)) : 0, end = least + 2 ** bits;
+          if (!Number.isInteger(number) || number < least || number >= end) {
+            throw new RangeError(`${name} is a whole number from ${least} to below ${end}, not ${one}`);
+          }
         }
-        data[`set${type}`](at + offset + i * size, number, true);
+        data[`set${type}`](at + offset + i * bits / 8, kind === 'BigUint' ? BigInt(one) : number, true);
       });
     }
   }

@@ -1,6 +1,6 @@
 // Containers (.gic), from any source of bytes.
 import {placeOf} from './description.js';
-import {checkResponse} from './error.js';
+import {checkOptions, checkResponse} from './error.js';
 import {bytesOf} from './instance.js';
 import {place, useWorkers} from './workers.js';
 
@@ -22,7 +22,8 @@ export class Player {
   }
 
   /** @internal */
-  static async open(module, source, {limits, textures, signal} = {}) {
+  static async open(module, source, {limits, textures, signal, ...others} = {}) {
+    checkOptions(others, ['limits', 'textures', 'signal']);
     signal?.throwIfAborted();
     const given = await source;
     const player = new Player(await place(module), signal);

@@ -57,6 +57,7 @@ test('a volume of probes, with guard bands', async () => {
   late.decode(encoder.snapshot());
   assert.deepEqual(late.read('vis'), textures.vis);
   assert.throws(() => encoder.encode({color: textures.color}), /"vis", which is missing/);
+  assert.throws(() => encoder.encode({...textures, sky: textures.vis}), /there is no texture "sky": there are color, vis/);
 });
 
 test('engines\' layouts', async () => {
@@ -120,7 +121,9 @@ test('wrong calls are named', async () => {
   await assert.rejects(volumeOfLayout('nobody', [1, 1, 1]), {code: 'invalid_name'});
   const desc = await mapTexture([16, 16], 'R8_UNORM');
   await assert.rejects(Encoder.create(desc, {preset: 'slow'}), /there is no preset "slow": turbo, fast, strong are/);
-  await assert.rejects(Encoder.create(desc, {speed: 3}), /there is no speed/);
+  await assert.rejects(Encoder.create(desc, {speed: 3}), /there is no option speed: there are preset, gop/);
+  await assert.rejects(Encoder.create(desc, {gop: -1}), /gop is a whole number from 0 to below 4294967296, not -1/);
+  await assert.rejects(Encoder.create(desc, {host: 64}), /there is no option host/);
   await assert.rejects(Encoder.create({...desc, tiling: 'spiral'}), /there is no tiling "spiral"/);
   await assert.rejects(VolumeEncoder.create({kind: 'clouds', textures: []}), /there is no kind "clouds": .*probes/);
   await assert.rejects(Writer.create({room: {kind: 'textures', textures: [desc]}}), /has a name/);

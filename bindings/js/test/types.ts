@@ -14,7 +14,7 @@ export async function play(file: File): Promise<Texels> {
   return words.length > 0 ? words : player.read(0);
 }
 
-export async function write(texels: Uint16Array): Promise<Uint8Array> {
+export async function write(texels: Uint16Array): Promise<Blob> {
   const color = await ddgiIrradiance([2, 2, 2], 'R16G16B16A16_SFLOAT');
   const room: VolumeDesc = {kind: 'probes', textures: [{name: 'color', ...color}]};
   const writer = await Writer.create({room: {...room, geometry: {origin: [0, 0, 0]}}}, {preset: 'strong'});
@@ -26,7 +26,7 @@ export async function write(texels: Uint16Array): Promise<Uint8Array> {
   console.log((await peek(packet)).type === 'keyframe', (await volumeOfLayout('three', [4, 4, 4])).kind);
   // @ts-expect-error: no such preset
   encoder.setPreset('slow');
-  return writer.finish();
+  return new Blob([writer.finish(), encoder.read()]);
 }
 
 export async function follow(url: string, signal: AbortSignal): Promise<string> {

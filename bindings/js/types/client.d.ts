@@ -1,4 +1,4 @@
-import type {Bytes, Geometry, Kind, Limits, Texels, Texture, TextureGroup} from './common.js';
+import type {Bytes, Geometry, Kind, Limits, OwnBytes, Texels, Texture, TextureGroup} from './common.js';
 export * from './common.js';
 
 export interface Viewpoint {
@@ -68,11 +68,11 @@ export interface ClientOptions {
 /** Takes messages of a server, holds the textures of its volumes. Has no transport: messages are bytes. */
 export interface Client {
   /** The message that opens a connection; after a lost one it asks to continue the session. */
-  hello(): Uint8Array;
+  hello(): OwnBytes;
   /** Takes a message; false after the server's goodbye. After an error close the connection. */
   receive(message: Bytes): boolean;
   /** The messages to send, oldest first. */
-  messages(): Uint8Array[];
+  messages(): OwnBytes[];
   setViewpoint(viewpoint: Viewpoint): void;
   /** Chooses the blocks of a group, whatever the viewpoint: a truth value for each. */
   subscribe(volume: number, blocks: Iterable<number | boolean>, group?: number): void;

@@ -16,9 +16,13 @@ export const ready: PromiseLike<void>;
 export function useModule(source: ModuleSource | PromiseLike<ModuleSource>): Promise<void>;
 
 export type ModuleSource = Response | Bytes;
+/** An array with a buffer of its own: Uint8Array<ArrayBuffer> from TypeScript 5.7 on, Uint8Array before. */
+export type OwnBytes = ReturnType<Uint8ArrayConstructor['of']>;
 export type Bytes = ArrayBuffer | ArrayBufferView;
 /** Components as they are where a format's are all whole and alike, else words of its records. */
-export type Texels = Uint8Array | Uint16Array | Uint32Array | Int8Array | Int16Array | Int32Array | Float32Array;
+export type Texels = ReturnType<
+  (Uint8ArrayConstructor | Uint16ArrayConstructor | Uint32ArrayConstructor | Int8ArrayConstructor |
+   Int16ArrayConstructor | Int32ArrayConstructor | Float32ArrayConstructor)['of']>;
 export type Three = readonly [number, number, number] | number[];
 
 export interface Component {

@@ -1,4 +1,4 @@
-import type {Bytes, Geometry, Texels, Texture, TextureDesc, Three, VolumeDesc} from './common.js';
+import type {Bytes, Geometry, OwnBytes, Texels, Texture, TextureDesc, Three, VolumeDesc} from './common.js';
 export * from './common.js';
 
 export type Preset = 'turbo' | 'fast' | 'strong';
@@ -20,9 +20,9 @@ export interface EncoderOptions {
 /** Turns successive contents of one texture into packets; the first one is a keyframe. */
 export interface Encoder {
   readonly desc: Texture;
-  encode(texture: Bytes, blocks?: Blocks): Uint8Array;
+  encode(texture: Bytes, blocks?: Blocks): OwnBytes;
   /** A keyframe of what decoders hold, for those that join late. */
-  snapshot(): Uint8Array;
+  snapshot(): OwnBytes;
   requestKeyframe(): void;
   setPreset(preset: Preset): void;
   /** Leaves inactive blocks out of "changed"; null: all are active. */
@@ -39,8 +39,8 @@ export const Encoder: {create(desc: TextureDesc, options?: EncoderOptions): Prom
 export interface VolumeEncoder {
   readonly textures: Texture[];
   /** The packets of an update, in the order in which decoders must apply them. */
-  encode(textures: Record<string, Bytes>, blocks?: Blocks): Uint8Array[];
-  snapshot(): Uint8Array[];
+  encode(textures: Record<string, Bytes>, blocks?: Blocks): OwnBytes[];
+  snapshot(): OwnBytes[];
   requestKeyframe(): void;
   setPreset(texture: string | number, preset: Preset): void;
 }
@@ -55,9 +55,9 @@ export interface Writer {
   /** Adds a packet that another encoder made. */
   addPacket(frame: number, packet: Bytes): void;
   /** The bytes since the last call, for those that send the container while it grows. */
-  take(): Uint8Array;
+  take(): OwnBytes;
   /** Ends the container: its bytes, or those since take(). */
-  finish(): Uint8Array;
+  finish(): OwnBytes;
 }
 export const Writer: {
   create(volumes: Record<string, WrittenVolume>,
