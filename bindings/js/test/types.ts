@@ -8,7 +8,7 @@ export async function play(file: File): Promise<Texels> {
   await useWorkers(2);
   const player: Player = await open(file, {textures: ['color', 1], limits: {maxTotalBytes: 1 << 28}});
   for await (const frame of player) console.log(frame.toFixed(), player.volumes[0]?.geometry?.origin);
-  const words: Uint32Array = await player.read('color', new Uint32Array(100));
+  const words = await player.read('color', new Uint32Array(100));
   // @ts-expect-error: a number alone
   await player.seek('0');
   return words.length > 0 ? words : player.read(0);
