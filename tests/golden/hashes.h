@@ -46,7 +46,7 @@ namespace gicodec::golden {
     const auto& textures = player->description().textures;
     for (std::size_t i = 0; i < textures.size(); ++i) {
       if (!is_known(textures[i])) continue;
-      std::vector<std::byte> texels(texture_bytes(textures[i].desc));
+      std::vector<std::byte> texels(static_cast<std::size_t>(texture_bytes(textures[i].desc)));
       const Status read = player->read(static_cast<std::uint8_t>(i), TextureView{texels});
       lines += read == Status::ok ? line_of(file, player->frame(), i, texels)
                                   : end_of(file, static_cast<int>(read));
