@@ -338,11 +338,11 @@ std::int64_t exr_samples(std::int64_t first, std::int64_t last, std::int64_t ste
 void check_image_bytes(std::uint64_t bytes, std::uint64_t ratio, const std::string& path) {
   constexpr std::uint64_t kFree = std::uint64_t{64} << 20;
   if (bytes <= kFree) return;
-  const std::uint64_t size = size_of_file(path).value_or(0);
-  if (bytes / ratio <= size && bytes <= kMaxImageBytes) return;
+  const auto size = size_of_file(path);
+  if (!size || (bytes / ratio <= *size && bytes <= kMaxImageBytes)) return;
   fail(Exit::bad_input,
        "{}: claims {} bytes of samples; its {} bytes hold {} at most, and images may have {}", path,
-       bytes, size, size * ratio, kMaxImageBytes);
+       bytes, *size, *size * ratio, kMaxImageBytes);
 }
 
 bool is_sound_exr_value(std::string_view type, std::string_view bytes) noexcept {

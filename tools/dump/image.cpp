@@ -143,8 +143,9 @@ DpxSizes read_dpx_sizes(const std::string& path) {
     for (std::size_t i = 0; i < 4; ++i) value = value << 8 | head[at + (big ? i : 3 - i)];
     return value;
   };
-  const DpxSizes sizes{word(4), word(16), word(32), size_of_file(path).value_or(0)};
-  if (!file) fail(Exit::bad_input, "{}: is truncated", path);
+  const auto size = size_of_file(path);
+  if (!file || !size) fail(Exit::bad_input, "{}: is truncated", path);
+  const DpxSizes sizes{word(4), word(16), word(32), *size};
   if (sizes.user != kUndefined && sizes.user > sizes.file) {
     fail(Exit::bad_input, "{}: its header claims {} bytes of user data, more than it has", path,
          sizes.user);

@@ -1,5 +1,5 @@
 // The streaming protocol's client, without a transport: messages are bytes.
-import {placeOf, readTexture, texturesOf} from './description.js';
+import {numberOf, placeOf, readTexture, texturesOf} from './description.js';
 import {checkOptions} from './error.js';
 import {bytesOf} from './instance.js';
 import {
@@ -76,15 +76,12 @@ export class Client {
   /** @internal */
   static async create(module, {delivery = 'unicast', token = '', limits, ...options} = {}) {
     checkOptions(options, ['budgetBlocks', 'budgetBytes', 'delivery', 'token', 'limits']);
-    if (!DELIVERIES.includes(delivery)) {
-      throw new RangeError(`there is no delivery "${delivery}": ${DELIVERIES.join(', ')} are`);
-    }
     const instance = await module.create();
     const client = new Client();
     client.#instance = instance;
     client.#handle = instance.with((memory) => {
       const struct = memory.struct(clientOptions, {
-        ...options, delivery: DELIVERIES.indexOf(delivery), token: memory.text(token),
+        ...options, delivery: numberOf(DELIVERIES, delivery, 'delivery'), token: memory.text(token),
         limits: limits && memory.struct(limitsStruct, limits)});
       return instance.made('client_create', [struct]);
     });

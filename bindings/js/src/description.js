@@ -17,7 +17,8 @@ const ARRAYS = {
   sfloat: [Uint8Array, Uint16Array, Float32Array],
 };
 
-function numberOf(list, name, what) {
+/** The place of a name in a list; numbers pass. */
+export function numberOf(list, name, what) {
   if (typeof name === 'number') return name;
   const number = list.indexOf(name);
   if (number < 0) throw new GicodecError(INVALID_NAME, `there is no ${what} "${name}": ${list.join(', ')} are`);
