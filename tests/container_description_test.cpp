@@ -196,6 +196,29 @@ TEST(ContainerDescriptions, WhatTheWriterRefuses) {
   EXPECT_EQ(create(many(257)), bad);
 }
 
+TEST(ContainerDescriptions, WhatIsWrongWithAVolume) {
+  const auto found = [](auto change) {
+    VolumeDesc volume = sample_description().volumes[0].desc;
+    change(volume, volume.groups[0]);
+    EXPECT_EQ(problem(volume).empty(), validate(volume) == Status::ok);
+    return std::string(problem(volume));
+  };
+  EXPECT_EQ(found([](auto&, auto&) {}), "");
+  EXPECT_EQ(found([](auto& v, auto&) { v.kind = 0; }).substr(0, 5), "kind:");
+  EXPECT_EQ(found([](auto& v, auto&) { v.groups.clear(); }), "groups: 1 to 16");
+  EXPECT_EQ(found([](auto& v, auto&) { v.groups.emplace_back(); }), "groups: one has no textures");
+  EXPECT_EQ(found([](auto&, auto& g) { ++g.textures[1].desc.grid.x; }),
+            "grid: the textures of a group have one space and one grid");
+  EXPECT_EQ(found([](auto&, auto& g) { g.textures[1].desc.record = {}; }).substr(0, 7), "record:");
+  EXPECT_EQ(found([](auto&, auto& g) { g.textures[1].desc.guard_band = 9; }),
+            "guard_band: it is 0 or 1");
+  EXPECT_EQ(found([](auto&, auto& g) { g.depends_on = 0; }).substr(0, 11), "depends_on:");
+  EXPECT_EQ(found([](auto&, auto& g) { g.presence = 1; }).substr(0, 9), "presence:");
+  EXPECT_EQ(found([](auto&, auto& g) { g.textures[1].name = "color"; }),
+            "name: two textures have the same");
+  EXPECT_EQ(found([](auto&, auto& g) { g.textures[1].name = ""; }).substr(0, 5), "name:");
+}
+
 TEST(ContainerDescriptions, AddingAVolumeThatIsNone) {
   ContainerDescription description;
   VolumeDesc volume = sample_description().volumes[0].desc;

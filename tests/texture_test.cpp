@@ -33,6 +33,7 @@ TEST(Status, EveryCodeHasItsOwnText) {
 template <typename Change>
 Status with(TextureDesc desc, Change&& change) {
   change(desc);
+  EXPECT_EQ(problem(desc).empty(), validate(desc) == Status::ok) << problem(desc);
   return validate(desc);
 }
 constexpr auto kBad = Status::invalid_description;
@@ -225,6 +226,38 @@ TEST(Desc, ValidateOfHemispheres) {
               d.grid = {4, 1, 1};
             }),
             kBad);
+}
+
+TEST(Desc, ProblemsNameTheField) {
+  const auto field = [](const TextureDesc& good, auto&& change) {
+    TextureDesc desc = good;
+    change(desc);
+    const std::string_view found = problem(desc);
+    return std::string(found.substr(0, found.find(':')));
+  };
+  const TextureDesc probes = probe_texture(Format::R16G16_SFLOAT, {3, 2, 5}, 8);
+  const TextureDesc pool = pool_texture(Format::R16G16_SFLOAT, 9, {2, 2, 2});
+  EXPECT_EQ(problem(probes), "");
+  EXPECT_EQ(problem(TextureDesc{}).substr(0, 7), "record:");
+  EXPECT_EQ(field(probes, [](auto& d) { d.block.x = 65; }), "block");
+  EXPECT_EQ(field(probes, [](auto& d) { d.guard_band = 2; }), "guard_band");
+  EXPECT_EQ(field(probes, [](auto& d) { d.block.y = 7; }), "guard_band");
+  EXPECT_EQ(field(probes, [](auto& d) { d.layout.tiling = static_cast<Tiling>(8); }), "tiling");
+  EXPECT_EQ(field(probes, [](auto& d) { d.layout.pad_before = 9; }), "pad_before");
+  EXPECT_EQ(field(probes, [](auto& d) { d.layout.pad_after = 9; }), "pad_after");
+  EXPECT_EQ(field(probes, [](auto& d) { d.layout.slots = {1, 1, 1}; }), "slots");
+  EXPECT_EQ(field(probes, [](auto& d) { d.grid.z = 0; }), "grid");
+  EXPECT_EQ(field(probes, [](auto& d) { d.records = {24, 16, 5}; }), "records");
+  EXPECT_EQ(field(bricks(), [](auto& d) { d.records = {1, 1, 1}; }), "records");
+  EXPECT_EQ(field(probes, [](auto& d) { d.space = static_cast<Space>(2); }), "space");
+  EXPECT_EQ(field(probes, [](auto& d) { d.presence = static_cast<Presence>(4); }), "presence");
+  EXPECT_EQ(field(probes, [](auto& d) { d.presence = Presence::brick; }), "presence");
+  EXPECT_EQ(field(probes, [](auto& d) { d.model = static_cast<Model>(6); }), "model");
+  EXPECT_EQ(field(probes, [](auto& d) { d.model = Model::unordered; }), "model");
+  EXPECT_EQ(field(pool, [](auto& d) { d.model = Model::stacked; }), "model");
+  EXPECT_EQ(field(pool, [](auto& d) { d.grid.y = 2; }), "grid");
+  EXPECT_EQ(field(pool, [](auto& d) { d.layout.slots = {2, 2, 2}; }), "slots");
+  EXPECT_EQ(field(pool, [](auto& d) { d.layout.slots = {9, 1, 0}; }), "slots");
 }
 
 Record custom_64_bytes() {

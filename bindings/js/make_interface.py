@@ -23,7 +23,8 @@ PLAIN = {
 POINTER = (4, "Uint32")
 
 DESCRIPTION = r"gicodec_(status_text|version_text|format_(from_name|name)|kind_name|" \
-    r"texture_desc_(complete|info)|volume_desc_(create|add_group|add_texture|check|destroy))"
+    r"texture_desc_(check|problem|complete|info)|" \
+    r"volume_desc_(create|add_group|add_texture|check|problem|destroy))"
 DECODER = rf"{DESCRIPTION}|gicodec_(player_(open|container|select|set_growing|next|seek|frame|frames|read|" \
     r"changed)|container_(json|version)|" \
     r"decoder_(create|decode|set_presence|read|changed|received|sequence)|" \

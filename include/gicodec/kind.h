@@ -109,5 +109,7 @@ struct Kind {
 /// names are valid and unique, and `bundled`, `presence` and `depends_on` are consistent. Else
 /// invalid_description or unsupported_format.
 Status validate(const VolumeDesc& volume) noexcept;
+/// Why not, as that of a texture. A volume without one may still be none of its kind's.
+[[nodiscard]] std::string_view problem(const VolumeDesc& volume) noexcept;
 
 }  // namespace gicodec

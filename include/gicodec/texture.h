@@ -152,6 +152,9 @@ struct BlockOrigin {
 /// unsupported_format if the record is not valid; invalid_description if another field is out of
 /// range or two fields contradict each other.
 Status validate(const TextureDesc& desc) noexcept;
+/// Why not, a field first: "guard_band: it is 0 or 1". Empty where validate() is ok. A zero follows
+/// the text; static storage.
+[[nodiscard]] std::string_view problem(const TextureDesc& desc) noexcept;
 
 // Precondition of what follows: validate(desc) is ok.
 [[nodiscard]] std::uint32_t block_count(const TextureDesc& desc) noexcept;

@@ -5,21 +5,16 @@
 #include <gicodec/probes.h>
 #include <gicodec/textures.h>
 
-#include <limits>
+#include <algorithm>
 
 namespace gicodec::c {
 namespace {
 
-/// Stores a number in a narrower field; false if it does not fit.
+/// A number of a field of one byte. Numbers beyond 255 become 255, which no field allows.
 template <typename Field>
-[[nodiscard]] bool fit(std::uint32_t number, Field& field) noexcept {
-  field = static_cast<Field>(number);
-  return number <= static_cast<std::uint32_t>(std::numeric_limits<Field>::max());
-}
-template <typename Enum>
-[[nodiscard]] bool fit_enum(std::uint32_t number, Enum& field) noexcept {
-  field = static_cast<Enum>(number);
-  return number <= UINT8_MAX;
+[[nodiscard]] constexpr Field narrow(std::uint32_t number) noexcept {
+  static_assert(sizeof(Field) == 1);
+  return static_cast<Field>(std::min<std::uint32_t>(number, UINT8_MAX));
 }
 
 /// The record of a format, or that of the components.
@@ -31,10 +26,9 @@ template <typename Enum>
     return out.bytes != 0 && same ? Status::ok : Status::unsupported_format;
   }
   out = {};
-  if (desc.component_count > kMaxComponents || !fit(desc.record_bytes, out.bytes) ||
-      !fit(desc.component_count, out.count)) {
-    return Status::unsupported_format;
-  }
+  if (desc.component_count > kMaxComponents) return Status::unsupported_format;
+  out.bytes = narrow<std::uint8_t>(desc.record_bytes);
+  out.count = narrow<std::uint8_t>(desc.component_count);
   for (std::size_t i = 0; i < out.count; ++i) {
     const gicodec_component& component = desc.components[i];
     std::copy(std::begin(component.name), std::end(component.name),
@@ -79,13 +73,16 @@ Status take_desc(const gicodec_texture_desc* given, TextureDesc& out) noexcept {
   out.grid = grid_of(desc.grid);
   out.records = grid_of(desc.records);
   out.layout.slots = grid_of(desc.slots);
-  const bool fits = fit(desc.block[0], out.block.x) && fit(desc.block[1], out.block.y) &&
-                    fit(desc.block[2], out.block.z) && fit(desc.guard_band, out.guard_band) &&
-                    fit_enum(desc.space, out.space) && fit_enum(desc.presence, out.presence) &&
-                    fit_enum(desc.model, out.model) && fit_enum(desc.tiling, out.layout.tiling) &&
-                    fit(desc.pad_before, out.layout.pad_before) &&
-                    fit(desc.pad_after, out.layout.pad_after);
-  return fits ? Status::ok : Status::invalid_description;
+  out.block = {narrow<std::uint8_t>(desc.block[0]), narrow<std::uint8_t>(desc.block[1]),
+               narrow<std::uint8_t>(desc.block[2])};
+  out.guard_band = narrow<std::uint8_t>(desc.guard_band);
+  out.space = narrow<Space>(desc.space);
+  out.presence = narrow<Presence>(desc.presence);
+  out.model = narrow<Model>(desc.model);
+  out.layout.tiling = narrow<Tiling>(desc.tiling);
+  out.layout.pad_before = narrow<std::uint8_t>(desc.pad_before);
+  out.layout.pad_after = narrow<std::uint8_t>(desc.pad_after);
+  return Status::ok;
 }
 
 gicodec_texture_desc desc_for_c(const TextureDesc& desc) noexcept {
@@ -165,6 +162,15 @@ uint32_t gicodec_format_at(uint32_t place) {
 gicodec_status gicodec_texture_desc_check(const gicodec_texture_desc* desc) {
   TextureDesc texture;
   return c::number(c::take_valid(desc, texture));
+}
+
+const char* gicodec_texture_desc_problem(const gicodec_texture_desc* desc) {
+  TextureDesc texture;
+  const Status status = c::take_desc(desc, texture);
+  if (status == Status::unsupported_format) return problem(TextureDesc{}).data();
+  if (status != Status::ok) return to_string(status).data();
+  const std::string_view found = problem(texture);
+  return found.empty() ? nullptr : found.data();
 }
 
 gicodec_status gicodec_texture_desc_info(const gicodec_texture_desc* desc,

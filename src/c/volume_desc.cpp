@@ -194,6 +194,16 @@ gicodec_status gicodec_volume_desc_check(const gicodec_volume_desc* volume) {
   return c::call([&] { return c::complete(volume->desc).status(); });
 }
 
+const char* gicodec_volume_desc_problem(const gicodec_volume_desc* volume) {
+  if (volume == nullptr) return to_string(Status::invalid_argument).data();
+  const std::string_view found = problem(volume->desc);
+  if (!found.empty()) return found.data();
+  const gicodec_status status = gicodec_volume_desc_check(volume);
+  if (status == GICODEC_OK) return nullptr;
+  return status == GICODEC_INVALID_DESCRIPTION ? "kind: its volumes have other textures"
+                                               : gicodec_status_text(status);
+}
+
 uint32_t gicodec_volume_desc_kind(const gicodec_volume_desc* volume) {
   return volume == nullptr ? 0 : volume->desc.kind;
 }

@@ -19,7 +19,7 @@ struct gicodec_volume_desc {
 
 namespace gicodec::c {
 
-/// invalid_description for numbers out of range, unsupported_format for an unknown format.
+/// The result may be invalid. unsupported_format for an unknown format or no record.
 [[nodiscard]] Status take_desc(const gicodec_texture_desc* given, TextureDesc& out) noexcept;
 /// Of the same size as any gicodec_texture_desc.
 [[nodiscard]] gicodec_texture_desc desc_for_c(const TextureDesc& desc) noexcept;

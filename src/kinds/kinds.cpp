@@ -48,30 +48,59 @@ bool same_set(const TextureGroup& a, const TextureGroup& b) noexcept {
                     same_texture);
 }
 
-Status check_group(const VolumeDesc& volume, std::size_t place) {
+std::string_view problem_of_group(const VolumeDesc& volume, std::size_t place) {
   const TextureGroup& group = volume.groups[place];
-  if (group.textures.empty()) return Status::invalid_description;
+  if (group.textures.empty()) return "groups: one has no textures";
   for (const NamedTexture& texture : group.textures) {
-    if (const Status status = validate(texture.desc); status != Status::ok) return status;
-    if (!same_blocks(texture.desc, group.textures.front().desc)) return Status::invalid_description;
+    if (const auto found = problem(texture.desc); !found.empty()) return found;
+    if (!same_blocks(texture.desc, group.textures.front().desc)) {
+      return "grid: the textures of a group have one space and one grid";
+    }
   }
   const bool depends = group.depends_on != TextureGroup::kNone;
-  if (depends != (group.dependencies != nullptr) || (depends && group.depends_on >= place)) {
-    return Status::invalid_description;
+  if (depends != (group.dependencies != nullptr)) {
+    return "depends_on: it and dependencies need each other";
   }
+  if (depends && group.depends_on >= place) return "depends_on: it is an earlier group";
   const TextureDesc* presence = nullptr;
   if (group.presence != TextureGroup::kNone) {
-    if (group.presence != 0 || !group.bundled) return Status::invalid_description;
+    if (group.presence != 0 || !group.bundled) {
+      return "presence: a group's is 0, its first texture, and the group is bundled";
+    }
     presence = &group.textures[group.presence].desc;
   }
   for (const NamedTexture& texture : group.textures) {
     if (texture.desc.presence == Presence::all) continue;
     if (presence == nullptr || presence->presence != Presence::all ||
         presence_bytes(texture.desc) != block_bytes(*presence)) {
-      return Status::invalid_description;
+      return "presence: blocks of the group's first texture hold it, no more and no less";
     }
   }
-  return Status::ok;
+  return {};
+}
+
+std::string_view problem_of_names(const VolumeDesc& volume) {
+  std::size_t seen = 0;
+  const auto known = [&](const std::string& name) {
+    std::size_t before = seen;
+    for (const TextureGroup& group : volume.groups) {
+      for (const NamedTexture& texture : group.textures) {
+        if (before-- == 0) return false;
+        if (texture.name == name) return true;
+      }
+    }
+    return false;
+  };
+  for (const TextureGroup& group : volume.groups) {
+    for (const NamedTexture& texture : group.textures) {
+      if (texture.name.empty() || texture.name.size() > kMaxName || !is_utf8(texture.name)) {
+        return "name: each texture's is UTF-8 of 1 to 255 bytes";
+      }
+      if (known(texture.name)) return "name: two textures have the same";
+      ++seen;
+    }
+  }
+  return {};
 }
 
 }  // namespace
@@ -99,37 +128,25 @@ bool same_but_layout(const VolumeDesc& a, const VolumeDesc& b) noexcept {
          std::equal(a.groups.begin(), a.groups.end(), b.groups.begin(), b.groups.end(), same_set);
 }
 
-Status validate(const VolumeDesc& volume) noexcept {
-  if (volume.kind == 0 || volume.groups.empty() || volume.groups.size() > kMaxGroups) {
-    return Status::invalid_description;
-  }
+std::string_view problem(const VolumeDesc& volume) noexcept {
+  if (volume.kind == 0) return "kind: it is 1 to 255";
+  if (volume.groups.empty() || volume.groups.size() > kMaxGroups) return "groups: 1 to 16";
   std::size_t textures = 0;
   for (std::size_t place = 0; place < volume.groups.size(); ++place) {
-    if (const Status status = check_group(volume, place); status != Status::ok) return status;
+    if (const auto found = problem_of_group(volume, place); !found.empty()) return found;
     textures += volume.groups[place].textures.size();
   }
-  if (textures > kMaxVolumeTextures) return Status::invalid_description;
-  std::size_t seen = 0;
-  const auto known = [&](const std::string& name) {
-    std::size_t before = seen;
-    for (const TextureGroup& group : volume.groups) {
-      for (const NamedTexture& texture : group.textures) {
-        if (before-- == 0) return false;
-        if (texture.name == name) return true;
-      }
-    }
-    return false;
-  };
+  if (textures > kMaxVolumeTextures) return "textures: 1 to 255";
+  return problem_of_names(volume);
+}
+
+Status validate(const VolumeDesc& volume) noexcept {
   for (const TextureGroup& group : volume.groups) {
     for (const NamedTexture& texture : group.textures) {
-      if (texture.name.empty() || texture.name.size() > kMaxName || !is_utf8(texture.name) ||
-          known(texture.name)) {
-        return Status::invalid_description;
-      }
-      ++seen;
+      if (!is_valid(texture.desc.record)) return Status::unsupported_format;
     }
   }
-  return Status::ok;
+  return problem(volume).empty() ? Status::ok : Status::invalid_description;
 }
 
 }  // namespace gicodec

@@ -57,67 +57,6 @@ constexpr bool is_clipped(const TextureDesc& desc) {
   return desc.records.x != 0 && desc.layout.tiling == Tiling::slices_xy_z;
 }
 
-constexpr bool in_range(std::uint64_t value, std::uint64_t most) {
-  return value >= 1 && value <= most;
-}
-
-bool valid_space(const TextureDesc& desc) {
-  const Grid& grid = desc.grid;
-  if (desc.space == Space::pool) {
-    if (grid.y != 1 || grid.z != 1 || !in_range(grid.x, kMaxBlocks)) return false;
-    const Grid& slots = desc.layout.slots;
-    if (slots == Grid{}) return desc.records == Grid{};
-    return desc.records == Grid{} && in_range(slots.x, kMaxBlocks) &&
-           in_range(slots.y, kMaxBlocks) && in_range(slots.z, kMaxBlocks) &&
-           std::uint64_t{slots.x} * slots.y <= kMaxBlocks &&
-           in_range(std::uint64_t{slots.x} * slots.y * slots.z, kMaxBlocks) &&
-           std::uint64_t{slots.x} * slots.y * slots.z >= grid.x;
-  }
-  if (desc.space != Space::grid || !(desc.layout.slots == Grid{})) return false;
-  if (!in_range(grid.x, kMaxGridSide) || !in_range(grid.y, kMaxGridSide) ||
-      !in_range(grid.z, kMaxGridSide)) {
-    return false;
-  }
-  const std::uint64_t plane = std::uint64_t{grid.x} * grid.y;
-  if (plane > kMaxBlocks || plane * grid.z > kMaxBlocks) return false;
-  if (desc.records == Grid{}) return true;
-  const auto reaches_last = [](std::uint64_t records, std::uint64_t blocks, std::uint64_t side) {
-    return records > (blocks - 1) * side && records <= blocks * side;
-  };
-  return desc.guard_band == 0 && desc.layout.pad_before == 0 && desc.layout.pad_after == 0 &&
-         reaches_last(desc.records.x, grid.x, desc.block.x) &&
-         reaches_last(desc.records.y, grid.y, desc.block.y) &&
-         reaches_last(desc.records.z, grid.z, desc.block.z);
-}
-
-/// Six records for each of n³ voxels.
-bool is_brick(const BlockShape& block) {
-  const std::uint8_t n = block.y;
-  return (n == 2 || n == 4 || n == 8) && block.z == n && block.x == kVoxelDirections * n;
-}
-
-/// True if block shape, space and presence fit the model.
-bool valid_model(const TextureDesc& desc) {
-  if ((desc.presence == Presence::brick) != (desc.model == Model::octree)) return false;
-  const bool plain = desc.guard_band == 0 && desc.records == Grid{};
-  switch (desc.model) {
-    case Model::none:
-      return true;
-    case Model::stacked:
-    case Model::continuous:
-      return desc.space == Space::grid;
-    case Model::unordered:
-      return plain && desc.presence != Presence::mask;
-    case Model::octree:
-      return desc.space == Space::pool && is_brick(desc.block);
-    case Model::hemispheres:
-      return plain && desc.space == Space::grid && desc.block == BlockShape{6, 1, 1} &&
-             desc.presence == Presence::all &&
-             (desc.record == colored_direction(false) || desc.record == colored_direction(true));
-  }
-  return false;
-}
-
 }  // namespace
 
 std::string_view to_string(Tiling tiling) noexcept {
@@ -130,23 +69,6 @@ Result<Tiling> tiling_from_string(std::string_view name) noexcept {
     if (kTilingNames[i] == name) return static_cast<Tiling>(i);
   }
   return Status::invalid_argument;
-}
-
-Status validate(const TextureDesc& desc) noexcept {
-  if (!is_valid(desc.record)) return Status::unsupported_format;
-  const BlockShape& block = desc.block;
-  const bool shape = in_range(block.x, kMaxBlockSide) && in_range(block.y, kMaxBlockSide) &&
-                     in_range(block.z, kMaxBlockSide) && record_count(block) <= kMaxBlockRecords;
-  const bool band =
-      desc.guard_band == 0 || (desc.guard_band == 1 && block.x == block.y && block.z == 1);
-  const bool layout = static_cast<std::uint8_t>(desc.layout.tiling) < kTilingCount &&
-                      desc.layout.pad_before <= kMaxPadding && desc.layout.pad_after <= kMaxPadding;
-  if (!shape || !band || !layout || desc.presence > Presence::brick || !valid_space(desc) ||
-      !valid_model(desc)) {
-    return Status::invalid_description;
-  }
-  // Sums of a few such sizes must not overflow.
-  return texture_bytes(desc) > SIZE_MAX / 16 ? Status::invalid_description : Status::ok;
 }
 
 std::uint32_t block_count(const TextureDesc& desc) noexcept {

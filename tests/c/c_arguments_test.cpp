@@ -169,14 +169,18 @@ TEST(CArguments, DescriptionsOutOfRange) {
       auto desc = irradiance();
       desc.*field = number;
       EXPECT_EQ(gicodec_texture_desc_check(&desc), GICODEC_INVALID_DESCRIPTION) << number;
+      EXPECT_NE(gicodec_texture_desc_problem(&desc), nullptr) << number;
     }
   }
   auto desc = irradiance();
   desc.component_count = 3;
   EXPECT_EQ(gicodec_texture_desc_check(&desc), GICODEC_UNSUPPORTED_FORMAT);
+  EXPECT_EQ(std::string_view(gicodec_texture_desc_problem(&desc)).substr(0, 7), "record:");
   desc = irradiance();
+  EXPECT_EQ(gicodec_texture_desc_problem(&desc), nullptr);
   desc.block[0] = 256 + 8;
   EXPECT_EQ(gicodec_texture_desc_check(&desc), GICODEC_INVALID_DESCRIPTION);
+  EXPECT_EQ(std::string_view(gicodec_texture_desc_problem(&desc)).substr(0, 6), "block:");
 
   EXPECT_EQ(gicodec_format_from_name("VK_FORMAT_R16G16_SFLOAT"), 83U);
   EXPECT_EQ(gicodec_format_from_name("R16G16"), 0U);
@@ -216,7 +220,8 @@ TEST(CArguments, DescriptionsOutOfRange) {
             GICODEC_INVALID_NAME);
   EXPECT_EQ(gicodec_volume_desc_check(whole.get()), GICODEC_OK);
   ASSERT_EQ(gicodec_volume_desc_add_texture(whole.get(), "color", &desc), GICODEC_OK);
-  EXPECT_NE(gicodec_volume_desc_check(whole.get()), GICODEC_OK);  // a name twice
+  EXPECT_EQ(gicodec_volume_desc_check(whole.get()), GICODEC_INVALID_DESCRIPTION);
+  EXPECT_STREQ(gicodec_volume_desc_problem(whole.get()), "name: two textures have the same");
   EXPECT_EQ(gicodec_volume_desc_texture(whole.get(), 2, &desc), GICODEC_UNKNOWN_TEXTURE);
   EXPECT_EQ(gicodec_volume_desc_texture_name(whole.get(), 2), nullptr);
   EXPECT_EQ(gicodec_volume_desc_group_of(whole.get(), 2),

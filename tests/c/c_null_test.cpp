@@ -25,6 +25,8 @@ TEST(CNull, NullInPlaceOfAHandleOrAnOutput) {
   auto geometry = geometry_of(desc);
 
   EXPECT_EQ(gicodec_texture_desc_check(nullptr), kInvalid);
+  EXPECT_NE(gicodec_texture_desc_problem(nullptr), nullptr);
+  EXPECT_NE(gicodec_volume_desc_problem(nullptr), nullptr);
   EXPECT_EQ(gicodec_texture_desc_info(nullptr, &info), kInvalid);
   EXPECT_EQ(gicodec_texture_desc_info(&desc, nullptr), kInvalid);
   EXPECT_EQ(gicodec_texture_desc_complete(nullptr), kInvalid);

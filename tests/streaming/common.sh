@@ -29,7 +29,7 @@ trap 'stop_all; rm -rf "$work"' EXIT
 enough() {
   local begin=${EPOCHREALTIME/[^0-9]/}
   "$bin/gi-client" --version >/dev/null
-  local seconds=$((5 + (${EPOCHREALTIME/[^0-9]/} - begin) * 40 / 1000000))
+  local seconds=$((5 * slower + (${EPOCHREALTIME/[^0-9]/} - begin) * 40 / 1000000))
   echo $((seconds < 40 ? seconds : 40))
 }
 

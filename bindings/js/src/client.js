@@ -74,14 +74,15 @@ export class Client {
   #volumes = new Map();
 
   /** @internal */
-  static async create(module, {delivery = 'unicast', token = '', limits, ...options} = {}) {
+  static async create(module, options = {}) {
     checkOptions(options, ['budgetBlocks', 'budgetBytes', 'delivery', 'token', 'limits']);
+    const {delivery = 'unicast', token = '', limits, ...budgets} = options;
     const instance = await module.create();
     const client = new Client();
     client.#instance = instance;
     client.#handle = instance.with((memory) => {
       const struct = memory.struct(clientOptions, {
-        ...options, delivery: numberOf(DELIVERIES, delivery, 'delivery'), token: memory.text(token),
+        ...budgets, delivery: numberOf(DELIVERIES, delivery, 'delivery'), token: memory.text(token),
         limits: limits && memory.struct(limitsStruct, limits)});
       return instance.made('client_create', [struct]);
     });

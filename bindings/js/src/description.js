@@ -58,7 +58,11 @@ export function withDesc(instance, desc, body) {
       ...one, name: new TextEncoder().encode(one.name), type: numberOf(COMPONENT_TYPES, one.type, 'type'),
     }));
   }
-  return instance.with((memory) => body(memory.struct(textureDesc, fields)));
+  return instance.with((memory) => {
+    const at = memory.struct(textureDesc, fields);
+    instance.checkDesc('texture_desc', at, name);
+    return body(at);
+  });
 }
 
 /** The description of a struct, whole: with components, sizes, and the type of its arrays. */
@@ -109,7 +113,7 @@ export function createVolume(instance, {kind, groups, textures}) {
             'volume_desc_add_texture', [volume, memory.text(texture.name), at], {what: texture.name}));
       }
     }
-    instance.check('volume_desc_check', [volume]);
+    instance.checkDesc('volume_desc', volume);
     return volume;
   });
 }

@@ -1,6 +1,7 @@
 // Encoders: of one texture, and of all of a volume.
 import {
-  complete, createVolume, formatNumber, placeOf, readDesc, readTexture, texelsOf, texturesOf, withDesc,
+  complete, createVolume, formatNumber, numberOf, placeOf, readDesc, readTexture, texelsOf, texturesOf,
+  withDesc,
 } from './description.js';
 import {checkOptions} from './error.js';
 import {bytesOf} from './instance.js';
@@ -12,9 +13,7 @@ import {
 function withOptions(memory, options) {
   checkOptions(options, ['preset', 'gop', 'chunk', 'maxError', 'firstTexture']);
   const {preset, maxError = 0, gop, firstTexture = 0, chunk} = options;
-  if (preset !== undefined && !PRESETS.includes(preset)) {
-    throw new RangeError(`there is no preset "${preset}": ${PRESETS.join(', ')} are`);
-  }
+  if (preset !== undefined) numberOf(PRESETS, String(preset), 'preset');
   const list = Array.isArray(maxError) || ArrayBuffer.isView(maxError);
   return memory.struct(encoderOptions, {
     chunk, textureId: firstTexture, preset: preset && memory.text(preset),

@@ -51,6 +51,14 @@ export class Instance {
     return status;
   }
 
+  /** Throws an error that names the field if a "texture_desc" or "volume_desc" is not valid. */
+  checkDesc(kind, at, what) {
+    const status = this.call(`${kind}_check`, at);
+    if (status === OK) return;
+    const why = this.text(this.call(`${kind}_problem`, at));
+    throw this.error(status, what, why);
+  }
+
   /** The handle that check(name, [...values, &handle]) stores. */
   made(name, values, options) {
     return this.with((memory) => {
@@ -69,9 +77,11 @@ export class Instance {
     });
   }
 
-  error(status, what = '') {
-    const text = this.text(this.call('status_text', status)) || STATUS_NAMES[status];
-    const cure = status === LIMIT_EXCEEDED ? `; the option limits allows more: {${MEMORY.join(', ')}}` : '';
+  error(status, what = '', why = '') {
+    const meaning = this.text(this.call('status_text', status)) || STATUS_NAMES[status];
+    const text = why ? `${meaning}: ${why}` : meaning;
+    const limited = status === LIMIT_EXCEEDED && !this.#exports.gicodec_encoder_create;  // which has no limits
+    const cure = limited ? `; the option limits allows more: {${MEMORY.join(', ')}}` : '';
     return new GicodecError(status, `${what ? `${what}: ` : ''}${text}${cure}`);
   }
 

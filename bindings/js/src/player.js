@@ -22,8 +22,9 @@ export class Player {
   }
 
   /** @internal */
-  static async open(module, source, {limits, textures, signal, ...others} = {}) {
-    checkOptions(others, ['limits', 'textures', 'signal']);
+  static async open(module, source, options = {}) {
+    checkOptions(options, ['limits', 'textures', 'signal']);
+    const {limits, textures, signal} = options;
     signal?.throwIfAborted();
     const given = await source;
     const player = new Player(await place(module), signal);

@@ -125,6 +125,10 @@ test('wrong calls are named', async () => {
   await assert.rejects(Encoder.create(desc, {gop: -1}), /gop is a whole number from 0 to below 4294967296, not -1/);
   await assert.rejects(Encoder.create(desc, {host: 64}), /there is no option host/);
   await assert.rejects(Encoder.create({...desc, tiling: 'spiral'}), /there is no tiling "spiral"/);
+  await assert.rejects(Encoder.create({...desc, guardBand: 2}), /: guard_band: it is 0 or 1$/);
+  await assert.rejects(VolumeEncoder.create({kind: 'textures', textures: [
+    {...desc, name: 'a'}, {...desc, name: 'a'},
+  ]}), /name: two textures have the same/);
   await assert.rejects(VolumeEncoder.create({kind: 'clouds', textures: []}), /there is no kind "clouds": .*probes/);
   await assert.rejects(Writer.create({room: {kind: 'textures', textures: [desc]}}), /has a name/);
   await assert.rejects(Decoder.create(Promise.resolve(desc)), /a grid, a block, and a format/);

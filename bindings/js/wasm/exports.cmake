@@ -9,6 +9,8 @@ set(decoder_exports
   gicodec_version_text
   gicodec_format_from_name
   gicodec_format_name
+  gicodec_texture_desc_check
+  gicodec_texture_desc_problem
   gicodec_texture_desc_info
   gicodec_texture_desc_complete
   gicodec_volume_desc_create
@@ -16,6 +18,7 @@ set(decoder_exports
   gicodec_volume_desc_add_texture
   gicodec_volume_desc_destroy
   gicodec_volume_desc_check
+  gicodec_volume_desc_problem
   gicodec_kind_name
   gicodec_decoder_create
   gicodec_decoder_decode
@@ -51,6 +54,8 @@ set(client_exports
   gicodec_version_text
   gicodec_format_from_name
   gicodec_format_name
+  gicodec_texture_desc_check
+  gicodec_texture_desc_problem
   gicodec_texture_desc_info
   gicodec_texture_desc_complete
   gicodec_volume_desc_create
@@ -58,6 +63,7 @@ set(client_exports
   gicodec_volume_desc_add_texture
   gicodec_volume_desc_destroy
   gicodec_volume_desc_check
+  gicodec_volume_desc_problem
   gicodec_kind_name
   gicodec_volume_desc_json
   gicodec_client_create
@@ -90,6 +96,8 @@ set(encoder_exports
   gicodec_format_name
   gicodec_format_count
   gicodec_format_at
+  gicodec_texture_desc_check
+  gicodec_texture_desc_problem
   gicodec_texture_desc_info
   gicodec_texture_desc_complete
   gicodec_volume_desc_create
@@ -101,6 +109,7 @@ set(encoder_exports
   gicodec_layout_summary
   gicodec_volume_desc_destroy
   gicodec_volume_desc_check
+  gicodec_volume_desc_problem
   gicodec_kind_name
   gicodec_volume_desc_json
   gicodec_encoder_create

@@ -17,8 +17,8 @@ class Error(Exception):
     ``status`` is the number of <gicodec/status.h>, ``name`` its name, e.g. "checksum_mismatch".
     """
 
-    def __init__(self, status: int, doing: str = ""):
-        text = library.status_text(status).decode()
+    def __init__(self, status: int, doing: str = "", why: str = ""):
+        text = library.status_text(status).decode() + (f": {why}" if why else "")
         super().__init__(f"{doing}: {text}" if doing else text)
         self.status = status
         self.name = c.STATUS_NAMES.get(status, "unknown")
@@ -47,9 +47,9 @@ class BackendError(Error, RuntimeError):
 _CLASSES = {1: ArgumentError, 2: ResourceError, 3: FormatError, 4: MismatchError, 5: BackendError}
 
 
-def error_of(status: int, doing: str = "") -> Error:
+def error_of(status: int, doing: str = "", why: str = "") -> Error:
     """The exception for a status."""
-    return _CLASSES.get(status // 100, Error)(status, doing)
+    return _CLASSES.get(status // 100, Error)(status, doing, why)
 
 
 def _load() -> ctypes.CDLL:
@@ -87,6 +87,12 @@ class _Library:
         call = checked if "gicodec_" + name in c.FALLIBLE else function
         setattr(self, name, call)
         return call
+
+    def check_desc(self, kind: str, desc) -> None:
+        """Raises an Error that names the field if a "texture_desc" or "volume_desc" is not valid."""
+        status = self.status_of(kind + "_check", desc)
+        if status != c.OK:
+            raise error_of(status, why=decoded(getattr(self, kind + "_problem")(desc)) or "")
 
     def status_of(self, name: str, *arguments) -> int:
         """The status of a call, also where it is no success."""

@@ -23,6 +23,7 @@ class TextureDesc:
     """
 
     def __init__(self, struct: c.gicodec_texture_desc) -> None:
+        library.check_desc("texture_desc", byref(struct))
         library.texture_desc_complete(byref(struct))
         self.struct = struct
         self.components = formats.Components(struct)
@@ -154,6 +155,8 @@ class VolumeDesc(Handle):
         super().__init__("volume_desc_create", kind_number(kind))
         for name, desc in (textures or {}).items():
             library.volume_desc_add_texture(self._handle, name.encode(), byref(desc.struct))
+        if textures:
+            library.check_desc("volume_desc", self._handle)
 
     @classmethod
     def adopt(cls, handle: int) -> VolumeDesc:

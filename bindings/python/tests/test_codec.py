@@ -173,6 +173,12 @@ def test_errors_have_their_status():
                 pass
     with pytest.raises(ValueError, match="no format"):
         gicodec.ddgi_irradiance((1, 1, 1), "RGB10")
+    color = gicodec.ddgi_irradiance((1, 1, 1))
+    with pytest.raises(gicodec.ArgumentError, match="grid: the textures of a group"):
+        gicodec.VolumeDesc("probes", {"a": color, "b": gicodec.ddgi_irradiance((2, 1, 1))})
+    color.struct.guard_band = 2
+    with pytest.raises(gicodec.ArgumentError, match="guard_band: it is 0 or 1"):
+        gicodec.TextureDesc(color.struct)
 
 
 @pytest.mark.parametrize("dtype", ["float16", "float32", "float64", "uint8", "int16", "uint32",

@@ -119,6 +119,8 @@ typedef struct gicodec_texture_info {
 
 /// GICODEC_UNSUPPORTED_FORMAT, GICODEC_INVALID_DESCRIPTION.
 GICODEC_C_API gicodec_status gicodec_texture_desc_check(const gicodec_texture_desc* desc);
+/// Why not, a field first: "guard_band: it is 0 or 1". NULL where the check is ok. Static storage.
+GICODEC_C_API const char* gicodec_texture_desc_problem(const gicodec_texture_desc* desc);
 GICODEC_C_API gicodec_status gicodec_texture_desc_info(const gicodec_texture_desc* desc,
                                                        gicodec_texture_info* out);
 /// Fills in record_bytes and the components that follow from a format.
@@ -174,6 +176,8 @@ GICODEC_C_API void gicodec_volume_desc_destroy(gicodec_volume_desc* volume);
 
 /// GICODEC_OK if encoders and decoders take the volume.
 GICODEC_C_API gicodec_status gicodec_volume_desc_check(const gicodec_volume_desc* volume);
+/// Why not, as gicodec_texture_desc_problem().
+GICODEC_C_API const char* gicodec_volume_desc_problem(const gicodec_volume_desc* volume);
 GICODEC_C_API uint32_t gicodec_volume_desc_kind(const gicodec_volume_desc* volume);
 GICODEC_C_API const char* gicodec_kind_name(uint32_t kind);  ///< NULL if unknown
 GICODEC_C_API uint32_t gicodec_volume_desc_groups(const gicodec_volume_desc* volume);
