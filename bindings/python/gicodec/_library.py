@@ -141,6 +141,10 @@ class Handle:
         if getattr(self, "_handle", None):
             self.close()
 
+    def __reduce_ex__(self, protocol):
+        raise TypeError(f"a {type(self).__name__} is neither copied nor pickled: make one in each process, "
+                        "e.g. open the file there")
+
     def __enter__(self):
         return self
 

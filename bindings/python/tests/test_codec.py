@@ -1,6 +1,8 @@
 """Encoders, decoders, containers and sessions through the package."""
 
+import copy
 import io
+import pickle
 
 import numpy as np
 import pytest
@@ -138,6 +140,21 @@ def test_files_from_bytes_and_streams():
     writer, states = recording()
     for source in (writer.getvalue(), bytearray(writer.getvalue()), io.BytesIO(writer.getvalue())):
         assert same(gicodec.open(source)["vis"][-1], states[-1]["vis"])
+
+
+def test_handles_are_not_copied():
+    color = gicodec.map_texture((8, 8), "R8_UNORM")
+    volume = gicodec.VolumeDesc("textures", {"color": color})
+    with gicodec.Writer(None, {"room": volume}) as writer:
+        writer.add(0, {"color": color.empty()})
+    file = gicodec.open(writer.getvalue())
+    for ways, objects in (((copy.deepcopy, pickle.dumps), (file, file["color"])),
+                          ((copy.copy, copy.deepcopy, pickle.dumps), (gicodec.Encoder(color), volume))):
+        for way in ways:
+            for one in objects:
+                with pytest.raises(TypeError, match="neither copied nor pickled"):
+                    way(one)
+    assert copy.deepcopy(color) == color and file["color"][0].shape == color.shape
 
 
 def test_a_writer_leaves_nothing_half_done(tmp_path):
