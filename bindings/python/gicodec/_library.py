@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import functools
 import pathlib
+import threading
 
 from . import _interface as c
 
@@ -61,10 +62,24 @@ def _load() -> ctypes.CDLL:
                       "builds or brings it")
 
 
+class Pointer(int):
+    """The address of what a handle owns; threads take turns with it."""
+
+    def __new__(cls, address: int, of: str):
+        pointer = super().__new__(cls, address)
+        pointer.turn, pointer.of, pointer.is_closed = threading.RLock(), of, False
+        return pointer
+
+    def check(self) -> Pointer:
+        if self.is_closed:
+            raise ArgumentError(c.INVALID_ARGUMENT, f"the {self.of} is closed")
+        return self
+
+
 class _Library:
     """Calls by their names without "gicodec_". A call whose status is not OK raises an Error.
 
-    ctypes lets other threads run during a call.
+    ctypes lets other threads run during a call; those that want the same handle wait.
     """
 
     def __init__(self) -> None:
@@ -74,7 +89,14 @@ class _Library:
     def _function(self, name: str):
         function = getattr(self._dll, "gicodec_" + name)
         function.restype, function.argtypes = c.CALLS["gicodec_" + name]
-        return function
+
+        def in_turn(*arguments):
+            if not arguments or not isinstance(arguments[0], Pointer):
+                return function(*arguments)
+            with arguments[0].turn:
+                return function(arguments[0].check(), *arguments[1:])
+
+        return in_turn
 
     def __getattr__(self, name: str):
         function = self._function(name)
@@ -124,21 +146,26 @@ class Handle:
     """Owns a handle of the library and destroys it once."""
 
     _destroy = ""  # name of the call
+    _called = ""  # in messages, if not by its class
 
     def __init__(self, create: str, *arguments) -> None:
-        self._handle = None
         handle = ctypes.c_void_p()
         getattr(library, create)(*arguments, byref(handle))
-        self._handle = handle.value
+        self._handle = Pointer(handle.value, self._called or type(self).__name__)
+
+    @property
+    def is_closed(self) -> bool:
+        return self._handle.is_closed
 
     def close(self) -> None:
         """Frees what the library holds. Calls on a closed object are ArgumentErrors."""
-        handle, self._handle = self._handle, None
-        if handle:
-            getattr(library, self._destroy)(handle)
+        with self._handle.turn:
+            if not self._handle.is_closed:
+                getattr(library, self._destroy)(self._handle)
+                self._handle.is_closed = True
 
     def __del__(self) -> None:
-        if getattr(self, "_handle", None):
+        if hasattr(self, "_handle"):
             self.close()
 
     def __reduce_ex__(self, protocol):

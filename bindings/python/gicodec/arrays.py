@@ -6,6 +6,7 @@ import json
 
 import numpy as np
 
+from .codec import PRESETS
 from .container import File
 from .description import VolumeDesc, map_texture
 from .writer import Writer
@@ -16,7 +17,8 @@ _FORMATS = {"float16": "R16_SFLOAT", "float32": "R32_SFLOAT", "uint8": "R8_UINT"
             "bool": "R8_UINT", "float64": "R32G32_UINT", "int64": "R32G32_UINT",
             "uint64": "R32G32_UINT"}
 _COLOURS = {2: "R{0}G{0}", 3: "R{0}G{0}B{0}", 4: "R{0}G{0}B{0}A{0}"}
-_PRESETS = ("turbo", "fast", "strong")
+_LONGEST = 65535 * 16  # blocks along an axis, times the side of a block
+_ROW = 4096  # numbers in a row of an array that is longer than a texture may be
 
 
 def _format_of(array: np.ndarray) -> tuple[str, bool]:
@@ -34,7 +36,7 @@ def _preset(level: int | str | None) -> str:
     """0 and 1: turbo; 2 to 5, or None: fast; from 6 on: strong."""
     if level is None or isinstance(level, str):
         return level or "fast"
-    return _PRESETS[0 if level < 2 else 1 if level < 6 else 2]
+    return PRESETS[0 if level < 2 else 1 if level < 6 else 2]
 
 
 def _sides(shape: tuple[int, ...]) -> tuple[int, int, int]:
@@ -51,7 +53,8 @@ def encode(data, level: int | str | None = None, *, max_error: float = 0, thread
     """Any array of numbers as the bytes of a container.
 
     ``level``: "turbo", "fast", "strong", or 0 to 9. ``max_error``: 0 is lossless; below 1 relative
-    to each float, from 1 on in codes or representable values. ``out``: a writeable buffer for the
+    to each float (below the smallest normal number, to that), from 1 on in codes or representable
+    values. ``out``: a writeable buffer for the
     result, of which the used part is returned.
     """
     array = np.asarray(data)
@@ -64,6 +67,10 @@ def encode(data, level: int | str | None = None, *, max_error: float = 0, thread
                                   "shape": list(array.shape)})}
     writer_volumes: dict[str, VolumeDesc] = {}
     sides = _sides(array.shape[:-1] if coloured else array.shape)
+    texels = np.ascontiguousarray(array).reshape(-1).view(np.uint8)
+    if max(sides) > _LONGEST:
+        format, sides = _FORMATS[array.dtype.name], (_ROW, -(-array.size // _ROW), 1)
+        texels = np.pad(texels, (0, sides[0] * sides[1] * array.itemsize - texels.size))
     if array.size:
         block = (32, 32, 1) if sides[2] == 1 else (16, 16, 16)
         block = tuple(min(side, most) for side, most in zip(sides, block))
@@ -75,7 +82,7 @@ def encode(data, level: int | str | None = None, *, max_error: float = 0, thread
                               max_error=max_error, threads=threads, gop=0)
     with writer:
         if array.size:
-            writer.add(0, {"array": array}, blocks="all")
+            writer.add(0, {"array": texels}, blocks="all")
     coded = writer.getvalue()
     if out is None:
         return coded
@@ -102,8 +109,9 @@ def decode(data, *, out: np.ndarray | None = None, limits: dict | None = None,
         count = 1
         for side in shape:
             count *= side
+        behind = texture.desc.nbytes - count * dtype.itemsize
         if dtype.name not in _FORMATS or min(shape, default=0) < 0 or (
-                count and count * dtype.itemsize != texture.desc.nbytes):
+                count and not 0 <= behind < _ROW * dtype.itemsize):
             raise ValueError("the description of the array does not fit its texture")
         if out is None:
             out = np.empty(shape, dtype)
@@ -111,6 +119,9 @@ def decode(data, *, out: np.ndarray | None = None, limits: dict | None = None,
             raise ValueError(f"out must be a C-contiguous array of shape {shape} and type {dtype}")
         if count and not file.frames:
             raise ValueError("the bytes are cut off: the array itself is missing")
-        if count:
-            texture.read(0, out)
+        if count and behind == 0:
+            texture.read(0, out.reshape(-1).view(np.uint8))
+        elif count:
+            texels = np.empty(texture.desc.nbytes, np.uint8)
+            out[...] = texture.read(0, texels).view(dtype)[:count].reshape(shape)
         return out

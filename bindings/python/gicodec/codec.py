@@ -13,8 +13,13 @@ from ._library import Handle, Host, address, byref, library, limits_of, sized
 from .description import TextureDesc, VolumeDesc, block_list
 
 
+PRESETS = ("turbo", "fast", "strong")
+
+
 def _options(host: Host, *, backend: str, preset: str | None, level: int, gop: int | None,
              max_error, chunk: int, texture_id: int = 0) -> c.gicodec_encoder_options:
+    if preset is not None and preset not in PRESETS:
+        raise ValueError(f"there is no preset {preset!r}: {', '.join(PRESETS)} are")
     options = sized(c.gicodec_encoder_options, backend=backend.encode(), level=level,
                     preset=preset.encode() if preset else None, chunk=chunk,
                     gop=c.GOP_ON_REQUEST if gop == 0 else gop or 0, texture_id=texture_id,
@@ -31,6 +36,8 @@ def _options(host: Host, *, backend: str, preset: str | None, level: int, gop: i
 def _selection(blocks) -> tuple[int, object, int]:
     """What the library takes for "changed", "all" or a list."""
     if isinstance(blocks, str):
+        if blocks not in ("changed", "all"):
+            raise ValueError(f'blocks are "changed", "all" or a list of numbers, not {blocks!r}')
         return {"changed": c.SELECT_CHANGED, "all": c.SELECT_ALL}[blocks], None, 0
     chosen = block_list(blocks)
     return c.SELECT_LIST, chosen, chosen.size
@@ -43,11 +50,12 @@ def _data(chosen):
 def borrowed(call: str, *arguments, dtype) -> np.ndarray:
     """A copy of memory that a call points to."""
     count = ctypes.c_size_t()
-    at = getattr(library, call)(*arguments, byref(count))
-    if not at or count.value == 0:
-        return np.zeros(0, dtype)
-    size = count.value * np.dtype(dtype).itemsize
-    return np.frombuffer(ctypes.string_at(at, size), dtype)
+    with arguments[0].turn:
+        at = getattr(library, call)(*arguments, byref(count))
+        if not at or count.value == 0:
+            return np.zeros(0, dtype)
+        size = count.value * np.dtype(dtype).itemsize
+        return np.frombuffer(ctypes.string_at(at, size), dtype)
 
 
 class _Borrowed:
@@ -64,7 +72,8 @@ class Encoder(Handle):
 
     ``backend``: "native", "raw", "lz4" or "zstd". ``preset`` of native: "turbo", "fast" or
     "strong". ``gop``: a keyframe every so many packets, None for 30, 0 for none but the first.
-    ``max_error``: 0 is lossless; below 1 relative, else codes or representable values.
+    ``max_error``: 0 is lossless; below 1 relative (of what is below the smallest normal number, to
+    that), else codes or representable values.
     """
 
     _destroy = "encoder_destroy"
@@ -85,16 +94,18 @@ class Encoder(Handle):
         view, keep = self.desc.view_of(texture)
         selection, chosen, count = _selection(blocks)
         size = ctypes.c_size_t()
-        library.encoder_encode(self._handle, byref(view), selection, _data(chosen), count,
-                               self._packet.ctypes.data, self._packet.nbytes, byref(size))
-        return self._packet[:size.value].tobytes()
+        with self._handle.turn:
+            library.encoder_encode(self._handle, byref(view), selection, _data(chosen), count,
+                                   self._packet.ctypes.data, self._packet.nbytes, byref(size))
+            return self._packet[:size.value].tobytes()
 
     def snapshot(self) -> bytes:
         """A keyframe of what decoders hold, for those that join late."""
         size = ctypes.c_size_t()
-        library.encoder_snapshot(self._handle, self._packet.ctypes.data, self._packet.nbytes,
-                                 byref(size))
-        return self._packet[:size.value].tobytes()
+        with self._handle.turn:
+            library.encoder_snapshot(self._handle, self._packet.ctypes.data, self._packet.nbytes,
+                                     byref(size))
+            return self._packet[:size.value].tobytes()
 
     def request_keyframe(self) -> None:
         """Makes the next packet a keyframe."""
@@ -222,17 +233,19 @@ class VolumeEncoder(Handle):
         for place, (name, desc) in enumerate(self.textures.items()):
             if name not in textures:
                 raise KeyError(f"the volume has a texture {name!r}, which was not given")
-            views[place], array = desc.view_of(textures[name])
+            views[place], array = desc.view_of(textures[name], name)
             keep.append(array)
         selection, chosen, count = _selection(blocks)
-        library.volume_encoder_encode(self._handle, byref(views), len(views), selection,
-                                      _data(chosen), count)
-        return self._packets()
+        with self._handle.turn:
+            library.volume_encoder_encode(self._handle, byref(views), len(views), selection,
+                                          _data(chosen), count)
+            return self._packets()
 
     def snapshot(self) -> list[bytes]:
         """Keyframes of what decoders hold."""
-        library.volume_encoder_snapshot(self._handle)
-        return self._packets()
+        with self._handle.turn:
+            library.volume_encoder_snapshot(self._handle)
+            return self._packets()
 
     def _packets(self) -> list[bytes]:
         count = library.volume_encoder_packets(self._handle)

@@ -7,6 +7,7 @@ import json
 import mmap
 import os
 import pathlib
+import threading
 from typing import Iterator
 
 import numpy as np
@@ -31,6 +32,7 @@ class _Player(Handle):
     """Decodes one texture of a container, in one layout."""
 
     _destroy = "player_destroy"
+    _called = "file"
 
     def __init__(self, file: File, texture: int | None, tiling: str | None = None) -> None:
         host = Host(file._threads)
@@ -43,6 +45,9 @@ class _Player(Handle):
         except Error as error:
             if error.status == c.UNSUPPORTED_VERSION:
                 error.args = (_unknown_version(file._bytes),)
+            if error.status == c.NOT_GICODEC:
+                error.args = (f"{file._path or 'the input'} is no .gic file; KTX2, DDS, EXR and raw files "
+                              "become one by the tool: gicodec encode -o x.gic FILE...",)
             raise
         self._memory = file._bytes
         self.place = -1  # of the frame that was decoded; -1: the first one is next
@@ -79,7 +84,8 @@ class Texture:
     """A texture of a container: a sequence of frames, each an array.
 
     ``texture[0]``, ``texture[-1]``, ``texture[2:5]`` (one array of several frames), ``len()``,
-    iteration. Reading in order is fastest. Not for several threads at once.
+    iteration. Reading in order is fastest. Threads that read one texture take turns: open the file
+    once for each thread.
     """
 
     def __init__(self, file: File, number: int, name: str, volume: Volume) -> None:
@@ -87,6 +93,7 @@ class Texture:
         self.name, self.volume = name, volume
         self.desc = file._desc(number)
         self._players: dict[str | None, _Player] = {}
+        self._turn = threading.Lock()
 
     @property
     def format(self) -> str | None:
@@ -121,29 +128,31 @@ class Texture:
 
     def read(self, index: int = 0, out: np.ndarray | None = None) -> np.ndarray:
         """A frame by its place, negative ones from the end; into ``out`` if given."""
-        player = self._at(index, None)
         view, out = self.desc.target(out)
-        library.player_read(player._handle, self._number, byref(view))
+        with self._turn:
+            library.player_read(self._at(index, None)._handle, self._number, byref(view))
         return out
 
     def blocks(self, index: int = 0, *, guard_band: bool = False) -> np.ndarray:
         """A frame as blocks: [block, slice, row, column, component]."""
-        player = self._at(index, "blocks")
         view, out = self.desc.with_tiling("blocks").target(None)
-        library.player_read(player._handle, self._number, byref(view))
+        with self._turn:
+            library.player_read(self._at(index, "blocks")._handle, self._number, byref(view))
         band = 0 if guard_band else self.desc.struct.guard_band
         return out[:, :, band:out.shape[2] - band, band:out.shape[3] - band] if band else out
 
     def changed(self, index: int = 0) -> np.ndarray:
         """Blocks that a frame may have changed, ascending; all where decoding began."""
-        player = self._at(index, None)
-        return borrowed("player_changed", player._handle, self._number, dtype=np.uint32)
+        with self._turn:
+            return borrowed("player_changed", self._at(index, None)._handle, self._number,
+                            dtype=np.uint32)
 
     def as_float(self, index: int = 0) -> np.ndarray:
         """A frame as float32, exact for all floats."""
         return self.desc.as_float(self.read(index))
 
     def _at(self, index: int, tiling: str | None) -> _Player:
+        self._file._first._handle.check()
         frames = self.frames
         place = range(len(frames))[index]  # negative ones, and IndexError
         if tiling not in self._players:
@@ -232,11 +241,16 @@ class File:
             source = source.read()
         self._bytes = np.frombuffer(source, np.uint8)
         self._first = _Player(self, None)
-        self._container = library.player_container(self._first._handle)
+        self._address = library.player_container(self._first._handle)
         self._json = json.loads(text_of("container_json", self._container))
         self.frames = self._first.frames()
         self.volumes = [Volume(self, place)
                         for place in range(library.container_volumes(self._container))]
+
+    @property
+    def _container(self) -> int:
+        self._first._handle.check()
+        return self._address
 
     @property
     def textures(self) -> dict[str, Texture]:

@@ -10,7 +10,7 @@ import numpy as np
 
 from . import _interface as c
 from . import formats
-from ._library import Handle, byref, decoded, library, sized, text_of
+from ._library import Handle, Pointer, byref, decoded, error_of, library, sized, text_of
 
 TILINGS = ("atlas_xy_z", "atlas_xz_y", "atlas_x_yz", "slices_xz_y", "slices_xy_z", "blocks",
            "atlas_yz_x", "slices_yx_z")
@@ -79,6 +79,8 @@ class TextureDesc:
     def with_tiling(self, tiling: str) -> TextureDesc:
         """The same texture elsewhere in memory."""
         struct = c.gicodec_texture_desc.from_buffer_copy(self.struct)
+        if tiling not in TILINGS:
+            raise ValueError(f"there is no tiling {tiling!r}: {', '.join(TILINGS)} are")
         struct.tiling = TILINGS.index(tiling)
         struct.slots[:] = (0, 0, 0)
         struct.pad_before = struct.pad_after = 0
@@ -92,9 +94,27 @@ class TextureDesc:
         """float32 of all components, see formats.Components.as_float()."""
         return self.components.as_float(array)
 
-    def view_of(self, array) -> tuple[c.gicodec_const_view, object]:
-        """A view of anything with the texture's bytes, and what must live as long."""
+    def _check_fit(self, array: np.ndarray, name: str) -> None:
+        """Raises an error unless it is an array of this shape and type, or just its words or bytes."""
+        it = f"the texture{f' {name!r}' if name else ''}"
+        if array.dtype == np.uint8 and array.ndim == 1:
+            if array.nbytes != self.nbytes:
+                raise ValueError(f"{it} has {self.nbytes} bytes, not {array.nbytes}")
+            return
+        words = array.dtype.kind in "iu" and array.dtype.isnative and array.dtype.itemsize == self.dtype.itemsize
+        if array.dtype != self.dtype and not words:
+            raise TypeError(f"{it} is an array of {self.dtype}, not of {array.dtype}: convert it, "
+                            f"e.g. by numpy.asarray(array, numpy.{self.dtype})")
+        if [side for side in array.shape if side != 1] != [side for side in self.shape if side != 1]:
+            raise ValueError(f"{it} is an array of shape {self.shape}, not {array.shape}: [slice,] row, "
+                             "column, component; descriptions have the width first")
+
+    def view_of(self, array, name: str = "") -> tuple[c.gicodec_const_view, object]:
+        """A view of the texture's array or bytes, and what must live as long."""
+        if isinstance(array, (bytes, bytearray, memoryview)):
+            array = np.frombuffer(array, np.uint8)
         array = np.ascontiguousarray(array)
+        self._check_fit(array, name)
         view = sized(c.gicodec_const_view, bytes=array.ctypes.data, size=array.nbytes)
         return view, array
 
@@ -105,6 +125,7 @@ class TextureDesc:
         if not out.flags.c_contiguous or not out.flags.writeable or out.nbytes < self.nbytes:
             raise ValueError(f"out must be a writeable C-contiguous array of {self.nbytes} bytes, "
                              f"e.g. of shape {self.shape} and dtype {self.dtype}")
+        self._check_fit(out, "")
         return sized(c.gicodec_view, bytes=out.ctypes.data, size=out.nbytes), out
 
     def __eq__(self, other: object) -> bool:
@@ -122,24 +143,39 @@ class TextureDesc:
 
 def _made(call: str, *numbers: int) -> TextureDesc:
     struct = sized(c.gicodec_texture_desc)
-    getattr(library, call)(*numbers, byref(struct))
+    fit = all(isinstance(number, (int, np.integer)) and 0 <= number < 1 << 32 for number in numbers)
+    status = library.status_of(call, *numbers, byref(struct)) if fit else c.INVALID_DESCRIPTION
+    if status != c.OK:
+        raise error_of(status, f"{call}{numbers[:-1]}",
+                       "sizes are whole numbers from 1 on, at most 65535 blocks along an axis and 2^24 "
+                       "in all, with 1 to 64 records along a side" if status == c.INVALID_DESCRIPTION else "")
     return TextureDesc(struct)
+
+
+def _three(what: str, numbers: Sequence[int], least: int = 3) -> tuple:
+    """Sides along x, y, z; 1 for those that are not given."""
+    if not least <= len(numbers) <= 3:
+        raise ValueError(f"{what} has {least if least == 3 else f'{least} or 3'} numbers (x, y, z), not {numbers!r}")
+    return (*numbers, 1)[:3]
 
 
 def ddgi_irradiance(grid: Sequence[int], format: str | int = "A2B10G10R10_UNORM_PACK32") -> TextureDesc:
     """A DDGI volume's colour: probes of 8×8 texels with a guard band, as one atlas."""
-    return _made("ddgi_irradiance", *grid, formats.number(format))
+    return _made("ddgi_irradiance", *_three("a grid", grid), formats.number(format))
 
 
 def ddgi_visibility(grid: Sequence[int], format: str | int = "R16G16_SFLOAT") -> TextureDesc:
     """A DDGI volume's visibility: probes of 16×16 texels with a guard band, as one atlas."""
-    return _made("ddgi_visibility", *grid, formats.number(format))
+    return _made("ddgi_visibility", *_three("a grid", grid), formats.number(format))
 
 
 def map_texture(size: Sequence[int], format: str | int, block: Sequence[int] = (16, 16, 1)) -> TextureDesc:
-    """A 2D map, array or 3D texture of width × height [× depth] records, cut into blocks."""
-    width, height, depth = (*size, 1, 1)[:3]
-    return _made("map_texture", width, height, depth, *block, formats.number(format))
+    """A 2D map, array or 3D texture of width × height [× depth] records, cut into blocks.
+
+    Arrays have the height first: that of a texture of size (200, 120) has the shape (120, 200, …).
+    """
+    return _made("map_texture", *_three("a size", size, 2), *_three("a block", block, 2),
+                 formats.number(format))
 
 
 class VolumeDesc(Handle):
@@ -154,6 +190,9 @@ class VolumeDesc(Handle):
     def __init__(self, kind: str | int, textures: dict[str, TextureDesc] | None = None) -> None:
         super().__init__("volume_desc_create", kind_number(kind))
         for name, desc in (textures or {}).items():
+            if not isinstance(desc, TextureDesc):
+                raise TypeError(f"the texture {name!r} is described by a TextureDesc, e.g. of map_texture(), "
+                                f"not by {type(desc).__name__}")
             library.volume_desc_add_texture(self._handle, name.encode(), byref(desc.struct))
         if textures:
             library.check_desc("volume_desc", self._handle)
@@ -162,12 +201,14 @@ class VolumeDesc(Handle):
     def adopt(cls, handle: int) -> VolumeDesc:
         """Owns a handle of the library."""
         volume = cls.__new__(cls)
-        volume._handle = handle
+        volume._handle = Pointer(handle, cls.__name__)
         return volume
 
     @classmethod
     def of_layout(cls, layout: str, grid: Sequence[int]) -> VolumeDesc:
         """The volume of an engine's layout; layouts() names them."""
+        if layout not in layouts():
+            raise ValueError(f"there is no layout {layout!r}: {', '.join(layouts())} are")
         handle = ctypes.c_void_p()
         library.volume_desc_from_layout(layout.encode(), *grid, byref(handle))
         return cls.adopt(handle.value)
@@ -201,8 +242,8 @@ def kind_number(kind: str | int) -> int:
     for number in range(1, 256):
         if decoded(library.kind_name(number)) == kind:
             return number
-    raise ValueError(f"there is no kind {kind!r}: probes, irradiance vectors, textures, irradiance "
-                     "maps, photons, AO points and voxels are")
+    names = (decoded(library.kind_name(number)) for number in range(1, 256))
+    raise ValueError(f"there is no kind {kind!r}: {', '.join(filter(None, names))} are")
 
 
 def layouts() -> dict[str, str]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import difflib
+
 import numpy as np
 
 from . import _interface as c
@@ -22,8 +24,12 @@ def number(format: str | int) -> int:
     if isinstance(format, str):
         found = library.format_from_name(format.encode())
         if found == 0:
-            raise ValueError(f"there is no format {format!r}: gicodec.formats.names() lists them")
+            near = difflib.get_close_matches(format.upper(), names(), 3, 0.4)
+            raise ValueError(f"there is no format {format!r}: formats have the names of VkFormat, e.g. "
+                             f"{', '.join(near or ['R16G16B16A16_SFLOAT'])}; gicodec.formats.names() lists them")
         return found
+    if not isinstance(format, int):
+        raise TypeError(f"a format is a name of VkFormat, e.g. 'R16G16B16A16_SFLOAT', not {format!r}")
     return format
 
 

@@ -166,7 +166,7 @@ class Server(Handle):
         names = list(self._volumes[volume])
         chosen = None if blocks is None else block_list(blocks)
         for name, texture in textures.items():
-            view, keep = self._volumes[volume][name].view_of(texture)
+            view, keep = self._volumes[volume][name].view_of(texture, name)
             library.server_publish(self._handle, volume, names.index(name), byref(view),
                                    None if chosen is None else chosen.ctypes.data,
                                    0 if chosen is None else chosen.size)

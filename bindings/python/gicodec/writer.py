@@ -30,8 +30,14 @@ class Writer:
                  scene: str = "", **options) -> None:
         self._path = None if path is None else pathlib.Path(path)
         self._overwrite = overwrite
-        if self._path is not None and not overwrite and self._path.exists():
-            raise FileExistsError(f"{self._path} exists: pass overwrite=True to replace it")
+        self._stream, self._pieces = None, []
+        if self._path is not None:
+            if self._path.is_dir():
+                raise IsADirectoryError(f"{self._path} is a folder: give the name of a file")
+            if not overwrite and self._path.exists():
+                raise FileExistsError(f"{self._path} exists: pass overwrite=True to replace it")
+            if not self._path.parent.is_dir():
+                raise FileNotFoundError(f"there is no folder {self._path.parent} for {self._path.name}")
         self._container = _Container(volumes, geometry or {}, metadata or {}, scene,
                                      options.get("max_error", 0))
         self._writer = _BytesWriter(self._container)
@@ -40,7 +46,6 @@ class Writer:
         for name, volume in volumes.items():
             self._encoders[name] = VolumeEncoder(volume, first_texture=first, **options)
             first += len(volume.textures)
-        self._stream, self._pieces = None, []
         if self._path is not None:
             self._work = self._path.with_name(f".{self._path.name}.{secrets.token_hex(4)}")
             self._stream = self._work.open("xb")
@@ -49,18 +54,22 @@ class Writer:
     def add(self, frame: int, textures: dict, volume: str | None = None, blocks="changed") -> None:
         """Adds a frame of a volume; its name may be left out where there is one."""
         name = volume if volume is not None else next(iter(self._encoders))
+        if name not in self._encoders:
+            raise KeyError(f"there is no volume {name!r}: there are {', '.join(self._encoders)}")
+        _check_frame(frame)
         for packet in self._encoders[name].encode(textures, blocks):
             self.add_packet(frame, packet)
 
     def add_packet(self, frame: int, packet: bytes) -> None:
         """Adds a packet as it is; its texture number names its texture."""
+        _check_frame(frame)
         data = np.frombuffer(packet, np.uint8)
         library.writer_add(self._writer._handle, frame, data.ctypes.data, data.nbytes)
         self._drain()
 
     def close(self) -> None:
         """Ends the container, and gives the file its name."""
-        if self._writer._handle is None:
+        if self._writer.is_closed:
             return
         library.writer_finish(self._writer._handle)
         self._drain()
@@ -100,9 +109,22 @@ class Writer:
             self.close()
             return
         self._end()
-        if self._stream is not None:
+        self._abandon()
+
+    def _abandon(self) -> None:
+        """Removes what has no name yet."""
+        if self._stream is not None and not self._stream.closed:
             self._stream.close()
             self._work.unlink()
+
+    def __del__(self) -> None:
+        if hasattr(self, "_stream"):
+            self._abandon()
+
+
+def _check_frame(frame: int) -> None:
+    if not 0 <= frame < 1 << 64 or frame != int(frame):
+        raise ValueError(f"a frame is a whole number from 0 on, not {frame}")
 
 
 class _Container(Handle):

@@ -3,6 +3,7 @@
 import copy
 import io
 import pickle
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -142,6 +143,75 @@ def test_files_from_bytes_and_streams():
         assert same(gicodec.open(source)["vis"][-1], states[-1]["vis"])
 
 
+def test_arrays_that_do_not_fit_are_refused():
+    half = gicodec.map_texture((6, 4), "R16G16B16A16_SFLOAT")
+    good = np.arange(96, dtype=np.float16).reshape(4, 6, 4)
+    volume = gicodec.VolumeDesc("textures", {"color": half})
+    with gicodec.Writer(None, {"room": volume}) as writer:
+        for wrong in (good.astype("f4"), good.astype(">f2"), good.astype(object), good.tolist()):
+            with pytest.raises(TypeError, match="the texture 'color' is an array of float16, not of"):
+                writer.add(0, {"color": wrong})
+        for wrong in (good.transpose(1, 0, 2), good[:2], np.stack([good] * 5)):
+            with pytest.raises(ValueError, match=r"is an array of shape \(4, 6, 4\), not .*: .*row"):
+                writer.add(0, {"color": wrong})
+        with pytest.raises(ValueError, match="has 192 bytes, not 200"):
+            writer.add(0, {"color": b"x" * 200})
+        for frame in (-1, 1.5, 1 << 64):
+            with pytest.raises(ValueError, match="a whole number from 0 on"):
+                writer.add(frame, {"color": good})
+        with pytest.raises(KeyError, match="there are room"):
+            writer.add(0, {"color": good}, volume="hall")
+        for frame, same_bits in enumerate((good, good.view(np.uint16), good.tobytes(), good[None])):
+            writer.add(frame, {"color": same_bits})
+    texture = gicodec.open(writer.getvalue())["color"]
+    assert len(texture) == 4 and all(same(frame, good) for frame in texture)
+    with pytest.raises(TypeError, match="float16, not of float32"):
+        texture.read(0, np.empty((4, 6, 4), np.float32))
+    with pytest.raises(ValueError, match="is no .gic file; KTX2"):
+        gicodec.open(b"KTX 20 and so on" * 9)
+
+
+def test_descriptions_that_are_wrong():
+    for wrong in ((0, 4), (-1, 4), (1 << 33, 4), (2.0, 4)):
+        with pytest.raises(gicodec.ArgumentError, match="map_texture.* whole numbers from 1 on"):
+            gicodec.map_texture(wrong, "R8_UNORM")
+    with pytest.raises(ValueError, match="a grid has 3 numbers"):
+        gicodec.ddgi_irradiance((4, 4))
+    with pytest.raises(ValueError, match="R16G16B16A16_SFLOAT"):
+        gicodec.map_texture((4, 4), "r16g16b16a16_float")
+    with pytest.raises(TypeError, match="VkFormat"):
+        gicodec.map_texture((4, 4), np.float16)
+    with pytest.raises(ValueError, match="irradiance_maps"):
+        gicodec.VolumeDesc("maps")
+    with pytest.raises(TypeError, match="a TextureDesc"):
+        gicodec.VolumeDesc("textures", {"color": np.zeros(4)})
+
+
+def test_threads_take_turns():
+    desc = gicodec.map_texture((64, 64), "R16_UINT")
+    rng = np.random.default_rng(3)
+    given = [rng.integers(0, 65536, desc.shape, np.uint16) for _ in range(6)]
+    with gicodec.Writer(None, {"room": gicodec.VolumeDesc("textures", {"a": desc})}) as writer:
+        for frame, array in enumerate(given):
+            writer.add(frame, {"a": array})
+    texture = gicodec.open(writer.getvalue())["a"]
+    encoder = gicodec.Encoder(desc)
+    with ThreadPoolExecutor(4) as pool:
+        read = list(pool.map(lambda i: same(texture[i % 6], given[i % 6]), range(60)))
+        packets = list(pool.map(lambda i: encoder.encode(given[i % 6], "all"), range(60)))
+    assert all(read) and sorted(gicodec.peek(packet)["sequence"] for packet in packets) == list(range(1, 61))
+    encoder.close()
+    with pytest.raises(gicodec.ArgumentError, match="the Encoder is closed"):
+        encoder.encode(given[0])
+
+
+def test_arrays_longer_than_a_texture():
+    for shape in ((3_000_001,), (1_500_000, 3)):
+        array = np.random.default_rng(1).integers(0, 5, shape, np.uint8)
+        back = gicodec.decode(gicodec.encode(array, "turbo"))
+        assert back.shape == shape and same(back, array)
+
+
 def test_handles_are_not_copied():
     color = gicodec.map_texture((8, 8), "R8_UNORM")
     volume = gicodec.VolumeDesc("textures", {"color": color})
@@ -154,6 +224,12 @@ def test_handles_are_not_copied():
             for one in objects:
                 with pytest.raises(TypeError, match="neither copied nor pickled"):
                     way(one)
+    texture = file["color"]
+    file.close()
+    for use in (lambda: texture[0], lambda: texture.largest_error, lambda: file.metadata):
+        with pytest.raises(gicodec.ArgumentError, match="the file is closed"):
+            use()
+    file = gicodec.open(writer.getvalue())
     assert copy.deepcopy(color) == color and file["color"][0].shape == color.shape
 
 
@@ -164,6 +240,11 @@ def test_a_writer_leaves_nothing_half_done(tmp_path):
             writer.add(0, {"color": room().textures["color"].empty()})
     assert list(tmp_path.iterdir()) == []
     recording(path)
+    with pytest.raises(IsADirectoryError):
+        gicodec.Writer(tmp_path, {"room": room()}, overwrite=True)
+    with pytest.raises(FileNotFoundError, match="there is no folder"):
+        gicodec.Writer(tmp_path / "no" / "x.gic", {"room": room()})
+    gicodec.Writer(tmp_path / "dropped.gic", {"room": room()})
     with pytest.raises(FileExistsError, match="overwrite"):
         recording(path)
     first = path.read_bytes()
@@ -263,5 +344,5 @@ def test_layouts():
     for name in gicodec.layouts():
         volume = gicodec.VolumeDesc.of_layout(name, (4, 4, 4))
         assert volume.json()["groups"] and volume.textures
-    with pytest.raises(gicodec.ArgumentError):
+    with pytest.raises(ValueError, match="there is no layout 'none': paper"):
         gicodec.VolumeDesc.of_layout("none", (1, 1, 1))
