@@ -148,18 +148,25 @@ export function placeOf(textures, texture) {
 /** Reads a texture into an array of the caller's or a new one, by a call that takes the address of a view. */
 export function readTexture(instance, desc, into, read) {
   const out = into ?? new desc.ArrayType(desc.textureBytes / desc.ArrayType.BYTES_PER_ELEMENT);
-  checkSize(desc, out);
+  checkFit(desc, out);
   return instance.into(out, desc.textureBytes, read);
 }
 
 /** The fields of a view of the caller's texture, copied. */
 export function texelsOf(memory, desc, array) {
   const bytes = bytesOf(array);
-  checkSize(desc, bytes);
+  checkFit(desc, array);
   return {bytes: memory.put(bytes), size: bytes.length};
 }
 
-function checkSize({name, textureBytes}, {byteLength}) {
-  if (byteLength >= textureBytes) return;
-  throw new RangeError(`${name ? `"${name}"` : 'the texture'} has ${textureBytes} bytes, the array ${byteLength}`);
+/** Arrays are the bits of texels: of any integers, but not of floats where texels are something else. */
+function checkFit({name, textureBytes, ArrayType, format}, array) {
+  const it = name ? `"${name}"` : 'the texture';
+  const type = array.constructor;
+  if (type.name.startsWith('Float') && type !== ArrayType) {
+    throw new TypeError(`${it} takes the bits of ${format ?? 'its records'} in a ${ArrayType.name}, not a ${type.name}`);
+  }
+  if (array.byteLength !== textureBytes) {
+    throw new RangeError(`${it} has ${textureBytes} bytes, the array ${array.byteLength}`);
+  }
 }

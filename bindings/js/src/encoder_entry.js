@@ -19,12 +19,12 @@ export const VolumeEncoder = {
 export const Writer = {create: (volumes, options) => writer.Writer.create(module, volumes, options)};
 
 export const ddgiIrradiance = (grid, format = 'A2B10G10R10_UNORM_PACK32') =>
-  encoder.described(module, 'ddgi_irradiance', grid, format);
+  encoder.described(module, 'ddgi_irradiance', encoder.sides('a grid', grid, 3), format);
 export const ddgiVisibility = (grid, format = 'R16G16_SFLOAT') =>
-  encoder.described(module, 'ddgi_visibility', grid, format);
-export const mapTexture = ([width, height = 1, depth = 1], format, block = [16, 16, 1]) =>
-  encoder.described(module, 'map_texture', [width, height, depth, ...block], format);
+  encoder.described(module, 'ddgi_visibility', encoder.sides('a grid', grid, 3), format);
+export const mapTexture = (size, format, block = [16, 16, 1]) => encoder.described(
+    module, 'map_texture', [...encoder.sides('a size', size, 1), ...encoder.sides('a block', block, 2)], format);
 export const volumeOfLayout = (layout, grid) =>
-  encoder.volumeOf(module, 'volume_desc_from_layout', [layout, ...grid]);
+  encoder.volumeOf(module, layout, encoder.sides('a grid', grid, 3));
 export const layouts = () => encoder.layouts(module);
 export const formats = () => encoder.formats(module);

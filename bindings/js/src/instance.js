@@ -1,7 +1,7 @@
 // An instance of a WebAssembly module of the library, with memory of its own, and what lies in it.
 // Views of its memory are made anew after each call, which may move it.
 import {GicodecError} from './error.js';
-import {LIMIT_EXCEEDED, OK, OUT_OF_MEMORY, STATUS_NAMES, view} from './interface.js';
+import {BACKEND_MISSING, LIMIT_EXCEEDED, OK, OUT_OF_MEMORY, STATUS_NAMES, view} from './interface.js';
 
 /** Limits that large scenes meet first. */
 const MEMORY = ['maxTotalBytes', 'maxTextureBytes', 'maxWorkBytes'];
@@ -81,7 +81,9 @@ export class Instance {
     const meaning = this.text(this.call('status_text', status)) || STATUS_NAMES[status];
     const text = why ? `${meaning}: ${why}` : meaning;
     const limited = status === LIMIT_EXCEEDED && !this.#exports.gicodec_encoder_create;  // which has no limits
-    const cure = limited ? `; the option limits allows more: {${MEMORY.join(', ')}}` : '';
+    const cure = limited ? `; the option limits allows more: {${MEMORY.join(', ')}}` :
+      status === BACKEND_MISSING ? '; the package has native and raw: gicodec decode and gicodec encode make a file of these' :
+        '';
     return new GicodecError(status, `${what ? `${what}: ` : ''}${text}${cure}`);
   }
 

@@ -138,6 +138,9 @@ export class Player {
   read(texture, into) {
     return this.#inTurn(() => {
       const values = [placeOf(this.textures, texture), into];
+      if (ArrayBuffer.isView(into) && into.buffer.byteLength === 0) {
+        throw new TypeError('into was handed to a worker: go on with the array that read() resolved to');
+      }
       return this.#call('read', values, ArrayBuffer.isView(into) ? [into.buffer] : []);
     });
   }

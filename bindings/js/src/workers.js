@@ -29,6 +29,7 @@ class Worker {
   #end;
   #request = 0;
   #waiting = new Map();
+  #ended = null;  // why
 
   static async start(module) {
     const worker = new Worker();
@@ -38,7 +39,7 @@ class Worker {
       const url = URL.createObjectURL(new Blob([workerText], {type: 'text/javascript'}));
       const made = new globalThis.Worker(url, {type: 'module', name: 'gicodec'});
       made.onmessage = ({data}) => take(data);
-      made.onerror = (event) => fail(new Error(`a worker failed: ${event.message ?? 'it could not start'}`));
+      made.onerror = (event) => fail(new Error(`a worker failed: ${event.message ?? 'it could not start; a content security policy needs worker-src blob:'}`));
       worker.#post = (message, transfer) => made.postMessage(message, transfer);
       worker.#end = () => (made.terminate(), URL.revokeObjectURL(url));
     } else {
@@ -62,10 +63,11 @@ class Worker {
 
   request(player, method, values, transfer = []) {
     return new Promise((resolve, reject) => {
+      if (this.#ended) throw this.#ended;
       const request = ++this.#request;
+      this.#post({request, player, method, values}, transfer);
       this.#waiting.set(request, {resolve, reject});
       this.ref();
-      this.#post({request, player, method, values}, transfer);
     });
   }
 
@@ -81,13 +83,14 @@ class Worker {
   }
 
   #fail(error) {
+    this.#ended = error;
     for (const {reject} of this.#waiting.values()) reject(error);
     this.#waiting.clear();
     this.unref();
   }
 
   end() {
-    this.#fail(new Error('the worker was ended by useWorkers()'));
+    this.#fail(new Error('useWorkers() ended the worker of this player: open the container again'));
     this.#end();
   }
 }

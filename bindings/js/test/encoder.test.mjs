@@ -118,7 +118,9 @@ test('bounded errors', async () => {
 
 test('wrong calls are named', async () => {
   await assert.rejects(mapTexture([4, 4], 'R17_SFLOAT'), {code: 'unsupported_format', message: /R17_SFLOAT/});
-  await assert.rejects(volumeOfLayout('nobody', [1, 1, 1]), {code: 'invalid_name'});
+  await assert.rejects(volumeOfLayout('nobody', [1, 1, 1]), {code: 'invalid_name', message: /"nobody": paper/});
+  await assert.rejects(async () => ddgiIrradiance([8, 4]), /a grid is a list of 3 whole numbers from 1 on, not \[8,4\]/);
+  for (const size of [[0, 8], [8.5, 8], [-8, 8], 8]) await assert.rejects(async () => mapTexture(size, 'R8_UNORM'), RangeError);
   const desc = await mapTexture([16, 16], 'R8_UNORM');
   await assert.rejects(Encoder.create(desc, {preset: 'slow'}), /there is no preset "slow": turbo, fast, strong are/);
   await assert.rejects(Encoder.create(desc, {speed: 3}), /there is no option speed: there are preset, gop/);
@@ -133,6 +135,8 @@ test('wrong calls are named', async () => {
   await assert.rejects(Writer.create({room: {kind: 'textures', textures: [desc]}}), /has a name/);
   await assert.rejects(Decoder.create(Promise.resolve(desc)), /a grid, a block, and a format/);
   const writer = await Writer.create({room: {kind: 'textures', textures: [{name: 'a', ...desc}]}});
+  assert.throws(() => writer.add(0, {a: new Float32Array(64)}), /takes the bits of R8_UNORM in a Uint8Array, not a Float32Array/);
+  assert.throws(() => writer.add(0, {a: new Uint8Array(257)}), /"a" has 256 bytes, the array 257/);
   for (const frame of [-1, 1.5, '0']) assert.throws(() => writer.add(frame, {a: new Uint8Array(256)}), /a number from 0 on/);
   const encoder = await Encoder.create(desc);
   assert.throws(() => encoder.encode(new Uint8Array(256), 'alll'), /blocks are "changed", "all" or a list/);

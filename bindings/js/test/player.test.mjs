@@ -99,7 +99,14 @@ test('workers decode the same, and take buffers in turn', async () => {
     assert.deepEqual(await played(await open(trickle(golden(FILE), 999).stream)), expected);
     await assert.rejects(open(new Uint8Array(100)), {name: 'GicodecError', code: 'not_gicodec'});
     await assert.rejects(player.read('nobody'), RangeError);
-    players.forEach((one) => one.close());
+    await assert.rejects(player.read(0, into), /into was handed to a worker/);
+    assert.equal(hashOf(await player.read(0)), expected.at(-6)[2]);
+    players.slice(1).forEach((one) => one.close());
+    const late = player.next();
+    await useWorkers(1);
+    await assert.rejects(late, /open the container again/);
+    await assert.rejects(player.read(0), /open the container again/);
+    player.close();
   } finally {
     await useWorkers(0);
   }
