@@ -6,6 +6,10 @@ set(zig $ENV{GICODEC_ZIG})
 set(CMAKE_C_COMPILER ${zig} cc -target x86_64-linux-gnu.2.28)
 set(CMAKE_CXX_COMPILER ${zig} c++ -target x86_64-linux-gnu.2.28)
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+# Which instruction sets there are says libgcc, which zig has none of.
+execute_process(COMMAND gcc -print-libgcc-file-name OUTPUT_VARIABLE libgcc
+                OUTPUT_STRIP_TRAILING_WHITESPACE)
+set(CMAKE_CXX_STANDARD_LIBRARIES ${libgcc})
 get_filename_component(packages ${CMAKE_CURRENT_LIST_DIR}/../build/manylinux-packages ABSOLUTE)
 list(APPEND CMAKE_FIND_ROOT_PATH ${packages}/installed)
 set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
