@@ -12,7 +12,7 @@ namespace {
 
 /// A number of a field of one byte. Numbers beyond 255 become 255, which no field allows.
 template <typename Field>
-[[nodiscard]] constexpr Field narrow(std::uint32_t number) noexcept {
+[[nodiscard]] constexpr Field saturated(std::uint32_t number) noexcept {
   static_assert(sizeof(Field) == 1);
   return static_cast<Field>(std::min<std::uint32_t>(number, UINT8_MAX));
 }
@@ -27,8 +27,8 @@ template <typename Field>
   }
   out = {};
   if (desc.component_count > kMaxComponents) return Status::unsupported_format;
-  out.bytes = narrow<std::uint8_t>(desc.record_bytes);
-  out.count = narrow<std::uint8_t>(desc.component_count);
+  out.bytes = saturated<std::uint8_t>(desc.record_bytes);
+  out.count = saturated<std::uint8_t>(desc.component_count);
   for (std::size_t i = 0; i < out.count; ++i) {
     const gicodec_component& component = desc.components[i];
     std::copy(std::begin(component.name), std::end(component.name),
@@ -73,15 +73,15 @@ Status take_desc(const gicodec_texture_desc* given, TextureDesc& out) noexcept {
   out.grid = grid_of(desc.grid);
   out.records = grid_of(desc.records);
   out.layout.slots = grid_of(desc.slots);
-  out.block = {narrow<std::uint8_t>(desc.block[0]), narrow<std::uint8_t>(desc.block[1]),
-               narrow<std::uint8_t>(desc.block[2])};
-  out.guard_band = narrow<std::uint8_t>(desc.guard_band);
-  out.space = narrow<Space>(desc.space);
-  out.presence = narrow<Presence>(desc.presence);
-  out.model = narrow<Model>(desc.model);
-  out.layout.tiling = narrow<Tiling>(desc.tiling);
-  out.layout.pad_before = narrow<std::uint8_t>(desc.pad_before);
-  out.layout.pad_after = narrow<std::uint8_t>(desc.pad_after);
+  out.block = {saturated<std::uint8_t>(desc.block[0]), saturated<std::uint8_t>(desc.block[1]),
+               saturated<std::uint8_t>(desc.block[2])};
+  out.guard_band = saturated<std::uint8_t>(desc.guard_band);
+  out.space = saturated<Space>(desc.space);
+  out.presence = saturated<Presence>(desc.presence);
+  out.model = saturated<Model>(desc.model);
+  out.layout.tiling = saturated<Tiling>(desc.tiling);
+  out.layout.pad_before = saturated<std::uint8_t>(desc.pad_before);
+  out.layout.pad_after = saturated<std::uint8_t>(desc.pad_after);
   return Status::ok;
 }
 

@@ -141,12 +141,13 @@ std::string_view problem(const VolumeDesc& volume) noexcept {
 }
 
 Status validate(const VolumeDesc& volume) noexcept {
+  if (problem(volume).empty()) return Status::ok;
   for (const TextureGroup& group : volume.groups) {
     for (const NamedTexture& texture : group.textures) {
       if (!is_valid(texture.desc.record)) return Status::unsupported_format;
     }
   }
-  return problem(volume).empty() ? Status::ok : Status::invalid_description;
+  return Status::invalid_description;
 }
 
 }  // namespace gicodec

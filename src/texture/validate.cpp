@@ -1,7 +1,7 @@
 // What makes a texture's description invalid.
 #include <gicodec/texture.h>
 
-#include <array>
+#include <initializer_list>
 
 namespace gicodec {
 namespace {
@@ -132,8 +132,9 @@ std::string_view problem_of_model(const TextureDesc& desc) {
 }  // namespace
 
 std::string_view problem(const TextureDesc& desc) noexcept {
-  if (!is_valid(desc.record))
+  if (!is_valid(desc.record)) {
     return "record: unknown format, or components that overlap or are none";
+  }
   for (const auto part :
        {problem_of_block, problem_of_layout, problem_of_space, problem_of_model}) {
     if (const std::string_view found = part(desc); !found.empty()) return found;
@@ -144,8 +145,8 @@ std::string_view problem(const TextureDesc& desc) noexcept {
 }
 
 Status validate(const TextureDesc& desc) noexcept {
-  if (!is_valid(desc.record)) return Status::unsupported_format;
-  return problem(desc).empty() ? Status::ok : Status::invalid_description;
+  if (problem(desc).empty()) return Status::ok;
+  return is_valid(desc.record) ? Status::invalid_description : Status::unsupported_format;
 }
 
 }  // namespace gicodec

@@ -3,10 +3,10 @@ import {
   complete, createVolume, formatNumber, numberOf, placeOf, readDesc, readTexture, texelsOf, texturesOf,
   withDesc,
 } from './description.js';
-import {GicodecError, checkOptions} from './error.js';
+import {checkOptions} from './error.js';
 import {bytesOf} from './instance.js';
 import {
-  BUFFER_TOO_SMALL, INVALID_NAME, SELECT_ALL, SELECT_CHANGED, SELECT_LIST, constView, encoderOptions, textureDesc,
+  BUFFER_TOO_SMALL, SELECT_ALL, SELECT_CHANGED, SELECT_LIST, constView, encoderOptions, textureDesc,
 } from './interface.js';
 
 /** The struct of an encoder's options, and what it points to. */
@@ -179,7 +179,8 @@ export async function described(module, call, numbers, format) {
 /** Sides along x, y, z; 1 for those that are not given. */
 export function sides(what, numbers, least) {
   const list = Array.isArray(numbers) || ArrayBuffer.isView(numbers) ? Array.from(numbers) : [];
-  if (list.length < least || list.length > 3 || !list.every((side) => Number.isInteger(side) && side > 0 && side < 2 ** 32)) {
+  const whole = (side) => Number.isInteger(side) && side > 0 && side < 2 ** 32;
+  if (list.length < least || list.length > 3 || !list.every(whole)) {
     throw new RangeError(`${what} is a list of ${least === 3 ? '3' : `${least} to 3`} whole numbers from 1 on, not ` +
                          JSON.stringify(numbers));
   }
@@ -188,18 +189,18 @@ export function sides(what, numbers, least) {
 
 /** The volume of an engine's layout: a plain object. */
 export async function volumeOf(module, layout, grid) {
-  const known = Object.keys(await layouts(module));
-  if (!known.includes(layout)) {
-    throw new GicodecError(INVALID_NAME, `there is no layout "${layout}": ${known.join(', ')} are`);
-  }
   const instance = await module.create();
+  numberOf(Object.keys(layoutsOf(instance)), String(layout), 'layout');
   return instance.with((memory) => instance.json('volume_desc_json', instance.made(
       'volume_desc_from_layout', [memory.text(layout), ...grid], {what: `${layout} ${grid.join(' × ')}`})));
 }
 
 /** Engines' layouts, and a line about each. */
 export async function layouts(module) {
-  const instance = await module.create();
+  return layoutsOf(await module.create());
+}
+
+function layoutsOf(instance) {
   const count = instance.call('layout_count');
   return Object.fromEntries(Array.from({length: count}, (_, place) =>
     ['layout_name', 'layout_summary'].map((call) => instance.text(instance.call(call, place)))));

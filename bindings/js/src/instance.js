@@ -80,11 +80,15 @@ export class Instance {
   error(status, what = '', why = '') {
     const meaning = this.text(this.call('status_text', status)) || STATUS_NAMES[status];
     const text = why ? `${meaning}: ${why}` : meaning;
-    const limited = status === LIMIT_EXCEEDED && !this.#exports.gicodec_encoder_create;  // which has no limits
-    const cure = limited ? `; the option limits allows more: {${MEMORY.join(', ')}}` :
-      status === BACKEND_MISSING ? '; the package has native and raw: gicodec decode and gicodec encode make a file of these' :
-        '';
-    return new GicodecError(status, `${what ? `${what}: ` : ''}${text}${cure}`);
+    return new GicodecError(status, `${what ? `${what}: ` : ''}${text}${this.#cure(status)}`);
+  }
+
+  #cure(status) {
+    if (status === BACKEND_MISSING) {
+      return '; the package has native and raw: gicodec decode and gicodec encode make a file of these';
+    }
+    const limited = status === LIMIT_EXCEEDED && !this.#exports.gicodec_encoder_create;  // encoders have no limits
+    return limited ? `; the option limits allows more: {${MEMORY.join(', ')}}` : '';
   }
 
   /** A view that is valid until the next call. */

@@ -110,11 +110,12 @@ class _Library:
         setattr(self, name, call)
         return call
 
-    def check_desc(self, kind: str, desc) -> None:
-        """Raises an Error that names the field if a "texture_desc" or "volume_desc" is not valid."""
-        status = self.status_of(kind + "_check", desc)
+    def with_problem(self, name: str, desc) -> None:
+        """A call on a "texture_desc" or "volume_desc", whose Error names the field that is not valid."""
+        status = self.status_of(name, desc)
         if status != c.OK:
-            raise error_of(status, why=decoded(getattr(self, kind + "_problem")(desc)) or "")
+            problem = name[:name.rindex("_")] + "_problem"
+            raise error_of(status, why=decoded(getattr(self, problem)(desc)) or "")
 
     def status_of(self, name: str, *arguments) -> int:
         """The status of a call, also where it is no success."""

@@ -17,7 +17,7 @@ _FORMATS = {"float16": "R16_SFLOAT", "float32": "R32_SFLOAT", "uint8": "R8_UINT"
             "bool": "R8_UINT", "float64": "R32G32_UINT", "int64": "R32G32_UINT",
             "uint64": "R32G32_UINT"}
 _COLOURS = {2: "R{0}G{0}", 3: "R{0}G{0}B{0}", 4: "R{0}G{0}B{0}A{0}"}
-_LONGEST = 65535 * 16  # blocks along an axis, times the side of a block
+_BLOCKS = 65535  # along an axis
 _ROW = 4096  # numbers in a row of an array that is longer than a texture may be
 
 
@@ -48,6 +48,11 @@ def _sides(shape: tuple[int, ...]) -> tuple[int, int, int]:
     return rows[-1], rows[-2], depth
 
 
+def _block(sides: tuple[int, int, int]) -> tuple[int, ...]:
+    most = (32, 32, 1) if sides[2] == 1 else (16, 16, 16)
+    return tuple(min(pair) for pair in zip(sides, most))
+
+
 def encode(data, level: int | str | None = None, *, max_error: float = 0, threads: int = 1,
            out=None) -> bytes:
     """Any array of numbers as the bytes of a container.
@@ -68,12 +73,12 @@ def encode(data, level: int | str | None = None, *, max_error: float = 0, thread
     writer_volumes: dict[str, VolumeDesc] = {}
     sides = _sides(array.shape[:-1] if coloured else array.shape)
     texels = np.ascontiguousarray(array).reshape(-1).view(np.uint8)
-    if max(sides) > _LONGEST:
+    block = _block(sides)
+    if any(side > _BLOCKS * most for side, most in zip(sides, block)):
         format, sides = _FORMATS[array.dtype.name], (_ROW, -(-array.size // _ROW), 1)
         texels = np.pad(texels, (0, sides[0] * sides[1] * array.itemsize - texels.size))
+        block = _block(sides)
     if array.size:
-        block = (32, 32, 1) if sides[2] == 1 else (16, 16, 16)
-        block = tuple(min(side, most) for side, most in zip(sides, block))
         writer_volumes["array"] = VolumeDesc("textures", {"array": map_texture(sides, format, block)})
     else:
         writer_volumes["array"] = VolumeDesc(
@@ -111,7 +116,7 @@ def decode(data, *, out: np.ndarray | None = None, limits: dict | None = None,
             count *= side
         behind = texture.desc.nbytes - count * dtype.itemsize
         if dtype.name not in _FORMATS or min(shape, default=0) < 0 or (
-                count and not 0 <= behind < _ROW * dtype.itemsize):
+                count and not 0 <= behind < _ROW * dtype.itemsize or behind % dtype.itemsize):
             raise ValueError("the description of the array does not fit its texture")
         if out is None:
             out = np.empty(shape, dtype)

@@ -23,8 +23,7 @@ class TextureDesc:
     """
 
     def __init__(self, struct: c.gicodec_texture_desc) -> None:
-        library.check_desc("texture_desc", byref(struct))
-        library.texture_desc_complete(byref(struct))
+        library.with_problem("texture_desc_complete", byref(struct))
         self.struct = struct
         self.components = formats.Components(struct)
         info = sized(c.gicodec_texture_info)
@@ -195,7 +194,7 @@ class VolumeDesc(Handle):
                                 f"not by {type(desc).__name__}")
             library.volume_desc_add_texture(self._handle, name.encode(), byref(desc.struct))
         if textures:
-            library.check_desc("volume_desc", self._handle)
+            library.with_problem("volume_desc_check", self._handle)
 
     @classmethod
     def adopt(cls, handle: int) -> VolumeDesc:
@@ -207,8 +206,9 @@ class VolumeDesc(Handle):
     @classmethod
     def of_layout(cls, layout: str, grid: Sequence[int]) -> VolumeDesc:
         """The volume of an engine's layout; layouts() names them."""
-        if layout not in layouts():
-            raise ValueError(f"there is no layout {layout!r}: {', '.join(layouts())} are")
+        known = layouts()
+        if layout not in known:
+            raise ValueError(f"there is no layout {layout!r}: {', '.join(known)} are")
         handle = ctypes.c_void_p()
         library.volume_desc_from_layout(layout.encode(), *grid, byref(handle))
         return cls.adopt(handle.value)
@@ -239,11 +239,10 @@ class VolumeDesc(Handle):
 def kind_number(kind: str | int) -> int:
     if isinstance(kind, int):
         return kind
-    for number in range(1, 256):
-        if decoded(library.kind_name(number)) == kind:
-            return number
-    names = (decoded(library.kind_name(number)) for number in range(1, 256))
-    raise ValueError(f"there is no kind {kind!r}: {', '.join(filter(None, names))} are")
+    known = {name: number for number in range(1, 256) if (name := decoded(library.kind_name(number)))}
+    if kind not in known:
+        raise ValueError(f"there is no kind {kind!r}: {', '.join(known)} are")
+    return known[kind]
 
 
 def layouts() -> dict[str, str]:
