@@ -119,6 +119,8 @@ class Client {
   ~Client();
 
   /// The message that opens a connection. After a lost connection it asks to continue the session.
+  /// The client has no clock: if it is not is_connected() some seconds after you sent the message,
+  /// or messages cease to come, close the connection, open another one, and call this again.
   [[nodiscard]] Result<Message> hello();
   /// Takes one message. Status::end after a Goodbye of the server. Missing and damaged updates are
   /// no errors: the client requests what it lacks. After an error close the connection.

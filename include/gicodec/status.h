@@ -36,7 +36,7 @@ enum class [[nodiscard]] Status : std::uint16_t{
     unknown_connection = 114,  ///< no connection of that number, or one without a session
     mask_mismatch = 115,       ///< a mask whose length is not the number of blocks
     invalid_geometry = 116,    ///< a VolumeGeometry out of range, or for another grid
-    invalid_name = 117,        ///< a name that is too long, not UTF-8, or used twice
+    invalid_name = 117,        ///< a name that is unknown, too long, not UTF-8 or used twice
     invalid_time = 118,        ///< a time that is not finite
     invalid_bound = 119,       ///< a threshold or error bound out of range, or both at once
     invalid_interval = 120,    ///< an interval of 0, or different ones in a bundled group

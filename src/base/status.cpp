@@ -9,7 +9,7 @@ std::string_view to_string(Status status) noexcept {
     case Status::end:
       return "nothing is left to read";
     case Status::invalid_argument:
-      return "an argument is outside its range";
+      return "an argument is null or outside its range, or a struct has no struct_size";
     case Status::invalid_description:
       return "the description is invalid";
     case Status::view_too_small:
@@ -19,8 +19,8 @@ std::string_view to_string(Status status) noexcept {
     case Status::block_repeated:
       return "a block index occurs twice";
     case Status::unsupported_format:
-      return "the record is not valid, or the backend cannot code it; zstd, lz4 and raw code all "
-             "valid records";
+      return "the format is unknown, its components are not valid, or the backend cannot code "
+             "them; zstd, lz4 and raw code all valid ones";
     case Status::unknown_backend:
       return "no backend of that name is built in or was given";
     case Status::buffer_too_small:
@@ -44,7 +44,7 @@ std::string_view to_string(Status status) noexcept {
     case Status::invalid_geometry:
       return "the geometry is out of range or for another grid";
     case Status::invalid_name:
-      return "the name is too long, not UTF-8 or used twice";
+      return "the name is unknown, too long, not UTF-8 or used twice";
     case Status::invalid_time:
       return "the time is not finite";
     case Status::invalid_bound:

@@ -198,6 +198,13 @@ template <typename T>
   if (count != nullptr) *count = items.size();
   return items.data();
 }
+/// A list of blocks, which is never null: null would mean all blocks to the calls that take one.
+[[nodiscard]] inline const std::uint32_t* point_to_blocks(std::span<const std::uint32_t> blocks,
+                                                          std::size_t* count) noexcept {
+  static constexpr std::uint32_t kNone = 0;
+  const std::uint32_t* const first = point(blocks, count);
+  return first == nullptr ? &kNone : first;
+}
 [[nodiscard]] inline const std::uint8_t* point(std::span<const std::byte> memory,
                                                std::size_t* size) noexcept {
   if (size != nullptr) *size = memory.size();

@@ -208,7 +208,7 @@ gicodec_status gicodec_client_changed(gicodec_client* client, uint32_t volume, u
     if (found == nullptr) return Status::unknown_texture;
     const Status status = found->changed_blocks(after, client->changed);
     if (status == Status::ok) {
-      *blocks = c::point(std::span<const uint32_t>(client->changed), count);
+      *blocks = c::point_to_blocks(client->changed, count);
     }
     return status;
   });

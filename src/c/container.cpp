@@ -1,6 +1,7 @@
 // Descriptions of containers.
 #include "c/container.h"
 
+#include "bitstream/container_metadata.h"
 #include "c/json.h"
 #include "c/volume_desc.h"
 
@@ -102,8 +103,14 @@ gicodec_status gicodec_container_set_geometry(gicodec_container* container, uint
   if (c::find_volume(container, volume) == nullptr) return GICODEC_UNKNOWN_VOLUME;
   VolumeGeometry taken;
   const Status status = c::take_geometry(geometry, taken);
-  if (status == Status::ok) container->description.volumes[volume].geometry = taken;
-  return c::number(status);
+  if (status != Status::ok) return c::number(status);
+  VolumeEntry& entry = container->description.volumes[volume];
+  const auto& groups = entry.desc.groups;  // none if the kind is unknown
+  if (!groups.empty() && !(groups.front().textures.front().desc.grid == taken.grid)) {
+    return GICODEC_INVALID_GEOMETRY;
+  }
+  entry.geometry = taken;
+  return GICODEC_OK;
 }
 
 gicodec_status gicodec_container_set_largest_error(gicodec_container* container, uint32_t texture,
@@ -121,6 +128,9 @@ gicodec_status gicodec_container_add_metadata(gicodec_container* container, uint
     return GICODEC_INVALID_ARGUMENT;
   }
   if (!is_utf8(name) || !is_utf8(value)) return GICODEC_INVALID_NAME;
+  if (std::strlen(name) > kMaxText || std::strlen(value) > kMaxText) {
+    return GICODEC_LIMIT_EXCEEDED;
+  }
   auto* const metadata = const_cast<Metadata*>(c::find_metadata_of(container, of, index));
   if (metadata == nullptr) return GICODEC_INVALID_ARGUMENT;
   return c::call([&] {

@@ -99,8 +99,8 @@ gicodec_status gicodec_decoder_read(const gicodec_decoder* decoder, const gicode
 }
 
 const uint32_t* gicodec_decoder_changed(const gicodec_decoder* decoder, size_t* count) {
-  return c::point(decoder == nullptr ? std::span<const uint32_t>() : decoder->decoder->changed(),
-                  count);
+  return decoder == nullptr ? c::point(std::span<const uint32_t>(), count)
+                            : c::point_to_blocks(decoder->decoder->changed(), count);
 }
 
 const uint8_t* gicodec_decoder_records(const gicodec_decoder* decoder, size_t* size) {
@@ -169,9 +169,8 @@ gicodec_status gicodec_volume_decoder_read(const gicodec_volume_decoder* decoder
 const uint32_t* gicodec_volume_decoder_changed(const gicodec_volume_decoder* decoder,
                                                uint32_t texture, size_t* count) {
   const bool there = decoder != nullptr && texture <= UINT8_MAX;
-  return c::point(there ? decoder->decoder->changed(static_cast<uint8_t>(texture))
-                        : std::span<const uint32_t>(),
-                  count);
+  if (!there) return c::point(std::span<const uint32_t>(), count);
+  return c::point_to_blocks(decoder->decoder->changed(static_cast<uint8_t>(texture)), count);
 }
 
 const uint8_t* gicodec_volume_decoder_records(const gicodec_volume_decoder* decoder,

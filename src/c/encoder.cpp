@@ -17,6 +17,7 @@ struct gicodec_encoder : c::Handle {
 
 struct gicodec_volume_encoder : c::Handle {
   std::optional<VolumeEncoder> encoder;
+  std::size_t textures = 0;
   std::vector<Packet> packets;
 };
 
@@ -186,6 +187,7 @@ gicodec_status gicodec_volume_encoder_create(const gicodec_volume_desc* volume,
           settings.max_errors = c::bounds_of(volume->desc, given.max_error);
         }
         settings.first_texture = static_cast<uint8_t>(given.texture_id);
+        handle.textures = textures_of(volume->desc).size();
         settings.settings.threads = handle.host.threads();
         settings.settings.isa = handle.host.isa();
         return c::keep(VolumeEncoder::create(volume->desc, settings), handle.encoder);
@@ -199,7 +201,7 @@ gicodec_status gicodec_volume_encoder_encode(gicodec_volume_encoder* encoder,
                                              uint32_t selection, const uint32_t* blocks,
                                              size_t block_count) {
   return c::call(encoder, [&]() -> Status {
-    if (views == nullptr || view_count > kMaxVolumeTextures) return Status::invalid_argument;
+    if (views == nullptr || view_count != encoder->textures) return Status::invalid_argument;
     std::vector<ConstTextureView> texels;
     Status status = c::take_each(views, view_count, [&](const gicodec_const_view* view) {
       return c::take_view(view, texels.emplace_back());

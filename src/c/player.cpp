@@ -26,7 +26,7 @@ class PlayerSource final : public Source {
   Result<std::size_t> read(std::span<std::byte> into) override {
     std::size_t got = 0;
     const gicodec_status status = given_.read(given_.self, into.data(), into.size(), &got);
-    if (status != GICODEC_OK) return status_of_caller(status);
+    if (status != GICODEC_OK && status != GICODEC_END) return status_of_caller(status);
     if (got > into.size()) return Status::io_failed;
     return got;
   }
@@ -194,9 +194,8 @@ gicodec_status gicodec_player_read_changed(const gicodec_player* player, uint32_
 const uint32_t* gicodec_player_changed(const gicodec_player* player, uint32_t texture,
                                        size_t* count) {
   const bool there = player != nullptr && texture <= UINT8_MAX;
-  return c::point(
-      there ? player->player->changed(static_cast<uint8_t>(texture)) : std::span<const uint32_t>(),
-      count);
+  if (!there) return c::point(std::span<const uint32_t>(), count);
+  return c::point_to_blocks(player->player->changed(static_cast<uint8_t>(texture)), count);
 }
 
 }  // extern "C"

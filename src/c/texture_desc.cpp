@@ -49,11 +49,10 @@ void give_grid(const Grid& grid, std::uint32_t (&out)[3]) noexcept {
   return {given[0], given[1], given[2]};
 }
 
-/// A description that is valid, as the caller's struct.
+/// A description as the caller's struct, also one that is not valid, and whether it is.
 [[nodiscard]] gicodec_status give_texture(const TextureDesc& desc, gicodec_texture_desc* out) {
-  if (desc.record.bytes == 0) return GICODEC_UNSUPPORTED_FORMAT;
-  if (const Status status = validate(desc); status != Status::ok) return number(status);
-  return number(give(desc_for_c(desc), out));
+  const Status given = give(desc_for_c(desc), out);
+  return number(given == Status::ok ? validate(desc) : given);
 }
 
 /// A caller's description that is valid.
@@ -132,15 +131,17 @@ gicodec_status gicodec_ddgi_visibility(uint32_t nx, uint32_t ny, uint32_t nz, ui
 gicodec_status gicodec_map_texture(uint32_t width, uint32_t height, uint32_t depth,
                                    uint32_t block_x, uint32_t block_y, uint32_t block_z,
                                    uint32_t format, gicodec_texture_desc* out) {
-  const auto is_side = [](uint32_t side) { return side >= 1 && side <= kMaxBlockSide; };
-  if (!is_side(block_x) || !is_side(block_y) || !is_side(block_z) || width == 0 || height == 0 ||
-      depth == 0) {
-    return GICODEC_INVALID_DESCRIPTION;
+  const auto side = [](uint32_t given) { return c::saturated<uint8_t>(given); };
+  const BlockShape block{side(block_x), side(block_y), side(block_z)};
+  const Record record{static_cast<Format>(format)};
+  const auto fits = [](uint8_t given) { return given >= 1 && given <= kMaxBlockSide; };
+  if (!fits(block.x) || !fits(block.y) || !fits(block.z)) {
+    TextureDesc none;
+    none.record = record;
+    none.block = block;
+    return c::give_texture(none, out);
   }
-  const BlockShape block{static_cast<uint8_t>(block_x), static_cast<uint8_t>(block_y),
-                         static_cast<uint8_t>(block_z)};
-  const auto desc = map_texture(static_cast<Format>(format), {width, height, depth}, block);
-  return c::give_texture(desc, out);
+  return c::give_texture(map_texture(record, {width, height, depth}, block), out);
 }
 
 uint32_t gicodec_format_from_name(const char* name) {
@@ -168,6 +169,9 @@ const char* gicodec_texture_desc_problem(const gicodec_texture_desc* desc) {
   TextureDesc texture;
   const Status status = c::take_desc(desc, texture);
   if (status == Status::unsupported_format) return problem(TextureDesc{}).data();
+  if (desc != nullptr && status == Status::invalid_argument) {
+    return "struct_size: it is not the size of the struct";
+  }
   if (status != Status::ok) return to_string(status).data();
   const std::string_view found = problem(texture);
   return found.empty() ? nullptr : found.data();

@@ -9,6 +9,8 @@
 #include <gicodec/engines.h>
 #include <gicodec/irradiance_vectors.h>
 #include <gicodec/photons.h>
+#include <gicodec/probes.h>
+#include <gicodec/textures.h>
 #include <gicodec/voxels.h>
 
 #include <utility>
@@ -200,8 +202,15 @@ const char* gicodec_volume_desc_problem(const gicodec_volume_desc* volume) {
   if (!found.empty()) return found.data();
   const gicodec_status status = gicodec_volume_desc_check(volume);
   if (status == GICODEC_OK) return nullptr;
-  return status == GICODEC_INVALID_DESCRIPTION ? "kind: its volumes have other textures"
-                                               : gicodec_status_text(status);
+  if (status != GICODEC_INVALID_DESCRIPTION) return gicodec_status_text(status);
+  switch (volume->desc.kind) {
+    case kKindProbes:
+      return "kind: probes are one group of square blocks of depth 1, not cut, model stacked";
+    case kKindTextures:
+      return "kind: textures do not depend on one another, and have no presence";
+    default:
+      return "kind: its volumes have other textures; make them by the kind's own function";
+  }
 }
 
 uint32_t gicodec_volume_desc_kind(const gicodec_volume_desc* volume) {

@@ -133,7 +133,7 @@ std::string_view problem_of_model(const TextureDesc& desc) {
 
 std::string_view problem(const TextureDesc& desc) noexcept {
   if (!is_valid(desc.record)) {
-    return "record: unknown format, or components that overlap or are none";
+    return "format: unknown; where it is 0, components that overlap or are none";
   }
   for (const auto part :
        {problem_of_block, problem_of_layout, problem_of_space, problem_of_model}) {

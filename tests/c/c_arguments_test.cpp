@@ -158,9 +158,14 @@ TEST(CArguments, DescriptionsOutOfRange) {
   EXPECT_EQ(gicodec_ddgi_irradiance(1, 1, 1, 64, nullptr), kInvalid);
   EXPECT_EQ(gicodec_ddgi_visibility(1, 1, 1, 83, &out), GICODEC_OK);
   EXPECT_EQ(gicodec_ddgi_visibility(UINT32_MAX, 1, 1, 83, &out), GICODEC_INVALID_DESCRIPTION);
+  EXPECT_EQ(std::string_view(gicodec_texture_desc_problem(&out)).substr(0, 5), "grid:");
   EXPECT_EQ(gicodec_map_texture(8, 8, 1, 0, 8, 1, 83, &out), GICODEC_INVALID_DESCRIPTION);
+  EXPECT_EQ(std::string_view(gicodec_texture_desc_problem(&out)).substr(0, 6), "block:");
   EXPECT_EQ(gicodec_map_texture(8, 8, 1, 65, 8, 1, 83, &out), GICODEC_INVALID_DESCRIPTION);
   EXPECT_EQ(gicodec_map_texture(0, 8, 1, 8, 8, 1, 83, &out), GICODEC_INVALID_DESCRIPTION);
+  EXPECT_EQ(std::string_view(gicodec_texture_desc_problem(&out)).substr(0, 6), "block:");
+  EXPECT_EQ(gicodec_map_texture(8, 8, 1, 8, 8, 1, 5, &out), GICODEC_UNSUPPORTED_FORMAT);
+  EXPECT_EQ(std::string_view(gicodec_texture_desc_problem(&out)).substr(0, 7), "format:");
   for (const auto field : {&gicodec_texture_desc::guard_band, &gicodec_texture_desc::space,
                            &gicodec_texture_desc::presence, &gicodec_texture_desc::model,
                            &gicodec_texture_desc::tiling, &gicodec_texture_desc::pad_before,
@@ -175,7 +180,10 @@ TEST(CArguments, DescriptionsOutOfRange) {
   auto desc = irradiance();
   desc.component_count = 3;
   EXPECT_EQ(gicodec_texture_desc_check(&desc), GICODEC_UNSUPPORTED_FORMAT);
-  EXPECT_EQ(std::string_view(gicodec_texture_desc_problem(&desc)).substr(0, 7), "record:");
+  EXPECT_EQ(std::string_view(gicodec_texture_desc_problem(&desc)).substr(0, 7), "format:");
+  desc = irradiance();
+  desc.struct_size = 0;
+  EXPECT_EQ(std::string_view(gicodec_texture_desc_problem(&desc)).substr(0, 12), "struct_size:");
   desc = irradiance();
   EXPECT_EQ(gicodec_texture_desc_problem(&desc), nullptr);
   desc.block[0] = 256 + 8;
@@ -222,6 +230,13 @@ TEST(CArguments, DescriptionsOutOfRange) {
   ASSERT_EQ(gicodec_volume_desc_add_texture(whole.get(), "color", &desc), GICODEC_OK);
   EXPECT_EQ(gicodec_volume_desc_check(whole.get()), GICODEC_INVALID_DESCRIPTION);
   EXPECT_STREQ(gicodec_volume_desc_problem(whole.get()), "name: two textures have the same");
+  const auto flat =
+      made<OwnedVolume>([](auto made) { return gicodec_volume_desc_create(1, made); });
+  auto map = desc;
+  map.model = GICODEC_MODEL_NONE;
+  ASSERT_EQ(gicodec_volume_desc_add_texture(flat.get(), "color", &map), GICODEC_OK);
+  EXPECT_EQ(std::string_view(gicodec_volume_desc_problem(flat.get())).substr(0, 12),
+            "kind: probes");
   EXPECT_EQ(gicodec_volume_desc_texture(whole.get(), 2, &desc), GICODEC_UNKNOWN_TEXTURE);
   EXPECT_EQ(gicodec_volume_desc_texture_name(whole.get(), 2), nullptr);
   EXPECT_EQ(gicodec_volume_desc_group_of(whole.get(), 2),

@@ -233,6 +233,10 @@ TEST(CCodec, VolumesOfEveryLayoutAndKind) {
       if (kind != 5 && kind != 6 && kind != 7) ours.back().paint(t);
       views.push_back(ours.back().const_view());
     }
+    // The count is compared before a view is touched.
+    EXPECT_EQ(gicodec_volume_encoder_encode(encoder.get(), views.data(), views.size() + 1,
+                                            GICODEC_SELECT_ALL, nullptr, 0),
+              GICODEC_INVALID_ARGUMENT);
     ASSERT_EQ(gicodec_volume_encoder_encode(encoder.get(), views.data(), views.size(),
                                             GICODEC_SELECT_ALL, nullptr, 0),
               GICODEC_OK)
@@ -243,6 +247,12 @@ TEST(CCodec, VolumesOfEveryLayoutAndKind) {
     }
     for (std::uint32_t t = 0; t < theirs.size(); ++t) {
       const auto to = theirs[t].view();
+      if (t + 1 < theirs.size()) {  // the last packet was of another texture
+        const std::uint32_t* const none = gicodec_volume_decoder_changed(decoder.get(), t, &size);
+        ASSERT_EQ(size, 0U);
+        ASSERT_EQ(gicodec_volume_decoder_read(decoder.get(), t, &to, none, size), GICODEC_OK);
+        EXPECT_EQ(theirs[t].bytes, std::vector<std::uint8_t>(theirs[t].bytes.size()));
+      }
       ASSERT_EQ(gicodec_volume_decoder_read(decoder.get(), t, &to, nullptr, 0), GICODEC_OK);
       std::vector<std::uint8_t> encoded(theirs[t].bytes.size());
       auto held = sized<gicodec_view>();

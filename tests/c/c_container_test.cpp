@@ -38,7 +38,7 @@ struct CFile {
     *got = std::min(size, file.bytes.size() - file.position);
     std::memcpy(into, file.bytes.data() + file.position, *got);
     file.position += *got;
-    return GICODEC_OK;
+    return *got == size ? GICODEC_OK : GICODEC_END;
   }
   static gicodec_status seek(void* self, std::uint64_t offset) {
     static_cast<CFile*>(self)->position = static_cast<std::size_t>(offset);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <utility>
 
 namespace gicodec {
 namespace {
@@ -162,6 +163,9 @@ TEST(CNull, NullInPlaceOfAHandleOrAnOutput) {
   EXPECT_EQ(gicodec_container_set_geometry(container, 0, nullptr), kInvalid);
   geometry.spacing[0] = 0;
   EXPECT_EQ(gicodec_container_set_geometry(container, 0, &geometry), GICODEC_INVALID_GEOMETRY);
+  geometry.spacing[0] = 1;
+  ++geometry.grid[0];
+  EXPECT_EQ(gicodec_container_set_geometry(container, 0, &geometry), GICODEC_INVALID_GEOMETRY);
   EXPECT_EQ(gicodec_container_geometry(container, 0, &geometry), GICODEC_END);
   EXPECT_EQ(gicodec_container_geometry(nullptr, 0, &geometry), kInvalid);
   EXPECT_EQ(gicodec_container_geometry(container, 1, &geometry), GICODEC_UNKNOWN_VOLUME);
@@ -311,6 +315,12 @@ TEST(CNull, NullInPlaceOfAClientOrServer) {
   auto event = sized<gicodec_event>();
   auto connection = sized<gicodec_connection_state>();
   EXPECT_EQ(gicodec_server_create(nullptr, nullptr), kInvalid);
+  auto server_options = sized<gicodec_server_options>();
+  server_options.preset = "slow";
+  EXPECT_EQ(gicodec_server_create(&server_options, &server), GICODEC_INVALID_SETTINGS);
+  server_options.preset = "strong";
+  EXPECT_EQ(gicodec_server_create(&server_options, &server), GICODEC_OK);
+  gicodec_server_destroy(std::exchange(server, nullptr));
   EXPECT_EQ(gicodec_server_add_volume(nullptr, "a", volume.get(), &geometry, nullptr, 0, &number),
             kInvalid);
   EXPECT_EQ(gicodec_server_remove_volume(nullptr, 0), kInvalid);

@@ -30,13 +30,16 @@ typedef struct gicodec_client_options {
 
 typedef struct gicodec_client gicodec_client;
 
-/// GICODEC_INVALID_SETTINGS, GICODEC_INVALID_ARGUMENT, GICODEC_OUT_OF_MEMORY.
+/// `options`: NULL for the defaults. GICODEC_INVALID_SETTINGS, GICODEC_INVALID_ARGUMENT,
+/// GICODEC_OUT_OF_MEMORY.
 GICODEC_C_API gicodec_status gicodec_client_create(const gicodec_client_options* options,
                                                    gicodec_client** out);
 GICODEC_C_API void gicodec_client_destroy(gicodec_client* client);
 
 /// Prepares the message that opens a connection, the next of gicodec_client_message(). After a lost
-/// connection it asks to continue the session, and drops messages that were not taken.
+/// connection it asks to continue the session, and drops messages that were not taken. The client
+/// has no clock: if `connected` stays 0 for some seconds after you sent the message, or messages
+/// cease to come, close the connection, open another one, and call this again.
 GICODEC_C_API gicodec_status gicodec_client_hello(gicodec_client* client);
 /// Takes one message of the server. GICODEC_END after its goodbye; after an error close the
 /// connection.
@@ -56,10 +59,12 @@ typedef struct gicodec_viewpoint {
   float time;    ///< of the client's picture, seconds; 0: no clock of its own
 } gicodec_viewpoint;
 
-/// Sent to every new session, too. GICODEC_INVALID_ARGUMENT.
+/// Sent to every new session, too. What it sees of a scene is the server's to judge: `eye` and
+/// `target` may be the same. GICODEC_INVALID_ARGUMENT for numbers out of range.
 GICODEC_C_API gicodec_status gicodec_client_set_viewpoint(gicodec_client* client,
                                                           const gicodec_viewpoint* viewpoint);
-/// Chooses the blocks of a group, whatever the viewpoint: a byte each, 0 for unwanted.
+/// Chooses the blocks of a group, whatever the viewpoint: a byte each, 0 for unwanted. Before the
+/// server has answered, any choice is kept; one that does not fit its volumes is dropped then.
 /// GICODEC_UNKNOWN_VOLUME, GICODEC_UNKNOWN_GROUP, GICODEC_MASK_MISMATCH.
 GICODEC_C_API gicodec_status gicodec_client_subscribe(gicodec_client* client, uint32_t volume,
                                                       uint32_t group, const uint8_t* blocks,

@@ -28,7 +28,7 @@ GICODEC_C_API void gicodec_container_destroy(gicodec_container* container);
 GICODEC_C_API gicodec_status gicodec_container_add_volume(gicodec_container* container,
                                                           const char* name,
                                                           const gicodec_volume_desc* volume);
-/// GICODEC_UNKNOWN_VOLUME, GICODEC_INVALID_GEOMETRY.
+/// GICODEC_UNKNOWN_VOLUME; GICODEC_INVALID_GEOMETRY, also for another grid than the volume's.
 GICODEC_C_API gicodec_status gicodec_container_set_geometry(gicodec_container* container,
                                                             uint32_t volume,
                                                             const gicodec_geometry* geometry);
@@ -42,7 +42,8 @@ enum {
   GICODEC_METADATA_VOLUME = 1,
   GICODEC_METADATA_TEXTURE = 2,
 };
-/// Adds a pair of name and value. GICODEC_INVALID_NAME if they are not UTF-8.
+/// Adds a pair of name and value. GICODEC_INVALID_NAME if they are not UTF-8,
+/// GICODEC_LIMIT_EXCEEDED if one is longer than 1 MiB.
 GICODEC_C_API gicodec_status gicodec_container_add_metadata(gicodec_container* container,
                                                             uint32_t of, uint32_t index,
                                                             const char* name, const char* value);
@@ -92,8 +93,8 @@ GICODEC_C_API gicodec_status gicodec_container_json(const gicodec_container* con
 typedef struct gicodec_sink {
   uint32_t struct_size;
   void* self;
-  /// Writes all bytes and returns GICODEC_OK, or none and another status, which the writer's call
-  /// then returns.
+  /// Writes all bytes and returns GICODEC_OK, or none and another status. The writer's call returns
+  /// that status too; GICODEC_IO_FAILED for a number that is none of this library's.
   gicodec_status (*write)(void* self, const void* bytes, size_t size);
 } gicodec_sink;
 
@@ -106,7 +107,8 @@ GICODEC_C_API gicodec_status gicodec_writer_create(const gicodec_sink* sink,
                                                    gicodec_writer** out);
 GICODEC_C_API void gicodec_writer_destroy(gicodec_writer* writer);
 /// Adds a packet of a frame. Frames must not decrease; a texture has at most one packet per frame.
-/// The packet's texture_id names its texture. GICODEC_WRONG_FRAME, GICODEC_UNKNOWN_TEXTURE,
+/// The packet's texture_id names its texture. Beyond its head a packet is not checked: add what an
+/// encoder made, or what a decoder took. GICODEC_WRONG_FRAME, GICODEC_UNKNOWN_TEXTURE,
 /// GICODEC_DESCRIPTION_MISMATCH, GICODEC_OUT_OF_ORDER after gicodec_writer_finish().
 GICODEC_C_API gicodec_status gicodec_writer_add(gicodec_writer* writer, uint64_t frame,
                                                 const void* packet, size_t size);
@@ -123,7 +125,8 @@ GICODEC_C_API gicodec_status gicodec_writer_take(gicodec_writer* writer);
 typedef struct gicodec_source {
   uint32_t struct_size;
   void* self;
-  /// Fills `into` and stores the number of bytes in `got`; fewer than asked for: the end.
+  /// Fills `into` and stores the number of bytes in `got`. Fewer than asked for: the end, with
+  /// GICODEC_OK or GICODEC_END. Other statuses: as those of gicodec_sink.
   gicodec_status (*read)(void* self, void* into, size_t bytes, size_t* got);
   /// The next read() begins at `offset`. NULL: the source cannot seek (a pipe).
   gicodec_status (*seek)(void* self, uint64_t offset);
@@ -169,7 +172,7 @@ GICODEC_C_API gicodec_status gicodec_player_set_layout(gicodec_player* player, u
                                                        const gicodec_texture_desc* desc);
 /// Applies the next frame. GICODEC_END after the last one; GICODEC_TRUNCATED if the file was cut
 /// off or is growing. After another error the frame is incomplete, and the next call goes on behind
-/// it.
+/// it: after GICODEC_OUT_OF_MEMORY seek to the frame to apply it in whole.
 GICODEC_C_API gicodec_status gicodec_player_next(gicodec_player* player);
 /// Not 0 while the source grows: gicodec_player_next() then ends no frame whose packets may not all
 /// have arrived; it returns GICODEC_TRUNCATED, and goes on with that frame when it is called again.
@@ -189,7 +192,7 @@ GICODEC_C_API gicodec_status gicodec_player_read(const gicodec_player* player, u
 GICODEC_C_API gicodec_status gicodec_player_read_changed(const gicodec_player* player,
                                                          uint32_t texture,
                                                          const gicodec_view* view);
-/// Blocks that the frame may have changed, ascending; all after a seek.
+/// Blocks that the frame may have changed, ascending; all after a seek. Not NULL, also for none.
 GICODEC_C_API const uint32_t* gicodec_player_changed(const gicodec_player* player, uint32_t texture,
                                                      size_t* count);
 

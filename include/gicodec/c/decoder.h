@@ -11,7 +11,7 @@ extern "C" {
 
 typedef struct gicodec_decoder_options {
   uint32_t struct_size;
-  uint32_t texture_id;  ///< volume decoders: of the first texture's packets
+  uint32_t texture_id;  ///< 0..255; volume decoders: of the first texture's packets
   const gicodec_limits* limits;
   const gicodec_backend* const* backends;  ///< besides the built-in ones
   size_t backend_count;
@@ -45,7 +45,7 @@ GICODEC_C_API gicodec_status gicodec_decoder_set_presence(gicodec_decoder* decod
 GICODEC_C_API gicodec_status gicodec_decoder_read(const gicodec_decoder* decoder,
                                                   const gicodec_view* view, const uint32_t* blocks,
                                                   size_t block_count);
-/// Blocks that the last packet may have changed, ascending.
+/// Blocks that the last packet may have changed, ascending. Not NULL, also for none.
 GICODEC_C_API const uint32_t* gicodec_decoder_changed(const gicodec_decoder* decoder,
                                                       size_t* count);
 /// All blocks, tightly packed, without guard bands; zero if not received.
@@ -78,7 +78,8 @@ GICODEC_C_API gicodec_status gicodec_volume_decoder_read(const gicodec_volume_de
                                                          uint32_t texture, const gicodec_view* view,
                                                          const uint32_t* blocks,
                                                          size_t block_count);
-/// Blocks of a texture that the last packet may have changed, ascending.
+/// Blocks of a texture that the last packet may have changed, ascending; none after a packet of
+/// another texture: ask after each packet. Not NULL, also for none.
 GICODEC_C_API const uint32_t* gicodec_volume_decoder_changed(const gicodec_volume_decoder* decoder,
                                                              uint32_t texture, size_t* count);
 /// As gicodec_decoder_records(), of a texture; NULL if it is unknown.

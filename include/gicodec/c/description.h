@@ -85,6 +85,9 @@ typedef struct gicodec_texture_desc {
   gicodec_component components[GICODEC_MAX_COMPONENTS];
 } gicodec_texture_desc;
 
+/// These fill in `out` also with GICODEC_INVALID_DESCRIPTION and GICODEC_UNSUPPORTED_FORMAT, so
+/// that gicodec_texture_desc_problem() can say why.
+///
 /// A DDGI volume's colour: nx × ny × nz probes of 8 × 8 texels with a guard band, an atlas.
 GICODEC_C_API gicodec_status gicodec_ddgi_irradiance(uint32_t nx, uint32_t ny, uint32_t nz,
                                                      uint32_t format, gicodec_texture_desc* out);
@@ -136,12 +139,17 @@ typedef struct gicodec_volume_desc gicodec_volume_desc;
 enum { GICODEC_NO_GROUP = 255 };  ///< the group of a texture that does not exist
 
 /// An empty volume of a kind: 1 probes, 2 irradiance vectors, 3 textures, 4 irradiance maps,
-/// 5 photons, 6 AO points, 7 voxels (gicodec_kind_name()).
+/// 5 photons, 6 AO points, 7 voxels (gicodec_kind_name()). Describe probes and textures by hand:
+/// probes are one group, whose textures have the same grid, square blocks of depth 1, and
+/// GICODEC_MODEL_STACKED, as gicodec_ddgi_irradiance() makes them; textures are groups of any that
+/// have no presence. The others have functions of their own below, or are layouts.
 GICODEC_C_API gicodec_status gicodec_volume_desc_create(uint32_t kind, gicodec_volume_desc** out);
 /// Adds a texture group. `bundled`: not 0 if a block is sent in all its textures or none.
 GICODEC_C_API gicodec_status gicodec_volume_desc_add_group(gicodec_volume_desc* volume,
                                                            uint32_t bundled);
-/// Adds a texture to the last group; without one, to a new group. GICODEC_INVALID_NAME.
+/// Adds a texture to the last group; without one, to a new group that is not bundled. Whether it
+/// suits the volume says gicodec_volume_desc_check(). GICODEC_INVALID_NAME,
+/// GICODEC_UNSUPPORTED_FORMAT.
 GICODEC_C_API gicodec_status gicodec_volume_desc_add_texture(gicodec_volume_desc* volume,
                                                              const char* name,
                                                              const gicodec_texture_desc* desc);

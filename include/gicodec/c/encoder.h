@@ -21,7 +21,7 @@ typedef struct gicodec_encoder_options {
   uint32_t chunk;       ///< native: most blocks per chunk, 1..4096; 0: chosen by size
   /// Not 0: raw, lz4 and zstd code updates as they are, not as differences to the last ones.
   uint32_t no_difference;
-  /// The texture_id in packets; a volume's textures count from it on.
+  /// The texture_id in packets, 0..255; a volume's textures count from it on.
   uint32_t texture_id;
   /// Error bound of decoded records (docs/guarantees.md): 0 lossless, below 1 relative, else codes
   /// or representable values.
@@ -48,9 +48,10 @@ GICODEC_C_API void gicodec_encoder_destroy(gicodec_encoder* encoder);
 /// Upper bound of the bytes of a packet of that many blocks.
 GICODEC_C_API size_t gicodec_encoder_bound(const gicodec_encoder* encoder, size_t blocks);
 /// Codes the selected blocks of `view` into `out`. `blocks` is read with GICODEC_SELECT_LIST only.
-/// With GICODEC_BUFFER_TOO_SMALL, `size` is a bound. Errors: GICODEC_VIEW_TOO_SMALL,
-/// GICODEC_BLOCK_OUT_OF_RANGE, GICODEC_BLOCK_REPEATED, GICODEC_OUT_OF_MEMORY,
-/// GICODEC_OUT_OF_ORDER if the texture needs presence first.
+/// `out` may be smaller than gicodec_encoder_bound() if the packet fits. With
+/// GICODEC_BUFFER_TOO_SMALL nothing was coded, and `size` is a bound. Errors:
+/// GICODEC_VIEW_TOO_SMALL, GICODEC_BLOCK_OUT_OF_RANGE, GICODEC_BLOCK_REPEATED,
+/// GICODEC_OUT_OF_MEMORY, GICODEC_OUT_OF_ORDER if the texture needs presence first.
 GICODEC_C_API gicodec_status gicodec_encoder_encode(gicodec_encoder* encoder,
                                                     const gicodec_const_view* view,
                                                     uint32_t selection, const uint32_t* blocks,
@@ -90,6 +91,8 @@ GICODEC_C_API void gicodec_volume_encoder_destroy(gicodec_volume_encoder* encode
 
 /// Codes the selected blocks of the views, one for each texture, into packets that the handle
 /// holds until the next call. A list applies to every group. An error leaves all as before.
+/// GICODEC_INVALID_ARGUMENT if `view_count` is not the number of textures, and the errors of
+/// gicodec_encoder_encode().
 GICODEC_C_API gicodec_status gicodec_volume_encoder_encode(gicodec_volume_encoder* encoder,
                                                            const gicodec_const_view* views,
                                                            size_t view_count, uint32_t selection,

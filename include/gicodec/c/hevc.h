@@ -8,14 +8,14 @@
 extern "C" {
 #endif
 
-/// NULL and 0 are the defaults, as <gicodec/hevc.h> has them.
+/// NULL and 0 are the defaults. <gicodec/hevc.h> says more.
 typedef struct gicodec_hevc_options {
   uint32_t struct_size;
-  uint32_t packing;          ///< 0 paper, 1 planes, 2 luma
-  uint32_t layout;           ///< 0 atlas, 1 packed
+  uint32_t packing;          ///< 0 paper, 1 planes, 2 luma (lossy colour alone)
+  uint32_t layout;           ///< 0 all blocks in place, 1 those of the update, side by side
   uint32_t decoder_threads;  ///< 1..64; 0: 1
-  const char* encoder;       ///< "x265" or names of FFmpeg encoders, separated by commas
-  const char* decoder;       ///< "libde265" or "ffmpeg"
+  const char* encoder;       ///< "x265" (NULL) or names of FFmpeg encoders, separated by commas
+  const char* decoder;       ///< "libde265" (NULL) or "ffmpeg"
   uint32_t lossy;            ///< not 0: lossy colour by `quantiser`
   uint32_t quantiser;        ///< 0..51
 } gicodec_hevc_options;

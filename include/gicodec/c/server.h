@@ -10,27 +10,36 @@
 extern "C" {
 #endif
 
-/// 0: the default, as <gicodec/server.h> has it.
+/// 0: the default, in brackets. Bytes and seconds unless said; <gicodec/server.h> says more.
 typedef struct gicodec_server_options {
   uint32_t struct_size;
-  int32_t level;
+  int32_t level;        ///< lz4, zstd: theirs
   const char* backend;  ///< "native" (NULL) or another
   const char* preset;   ///< NULL: the server chooses for each client
   const char* token;    ///< that clients must know; NULL: none
   const char* scene;    ///< name of the scene; NULL: none
   uint64_t scene_geometry;
-  uint64_t epoch;  ///< 0: drawn at random
-  uint32_t region[3];
-  uint32_t proofs;  ///< not 0: send hashes for clients to check
-  double interval;  ///< intended seconds between updates
-  uint64_t first_update_bytes;
-  uint32_t max_clients, max_connections, max_waiting, max_unicast, max_unicast_per_origin;
-  uint32_t max_in_flight;
-  uint64_t max_in_flight_bytes, max_message_bytes;
-  uint64_t max_bytes_per_second, max_total_bytes_per_second;
-  double messages_per_second, resyncs_per_second;
-  double hello_timeout, stall_timeout, linger_timeout;  ///< seconds
-  const gicodec_backend* const* backends;               ///< besides the built-in ones
+  uint64_t epoch;                   ///< 0: drawn at random
+  uint32_t region[3];               ///< blocks of a shared stream, all or no zeros [by block size]
+  uint32_t proofs;                  ///< not 0: send hashes for clients to check
+  double interval;                  ///< intended time between updates [the recent one]
+  uint64_t first_update_bytes;      ///< of the first update to a client, 2,048 or more [12,288]
+  uint32_t max_clients;             ///< sessions, those of lost connections included [4,096]
+  uint32_t max_connections;         ///< those without a Hello included [1,024]
+  uint32_t max_waiting;             ///< connections without a Hello [128]
+  uint32_t max_unicast;             ///< unicast sessions [32]
+  uint32_t max_unicast_per_origin;  ///< [no limit]
+  uint32_t max_in_flight;           ///< updates that a client has not acknowledged [24]
+  uint64_t max_in_flight_bytes;     ///< of these [16 MiB]
+  uint64_t max_message_bytes;       ///< of a client's message [1 MiB]
+  uint64_t max_bytes_per_second;    ///< to a client [no limit]
+  uint64_t max_total_bytes_per_second;     ///< to all together [no limit]
+  double messages_per_second;              ///< of a client, on average [200]
+  double resyncs_per_second;               ///< of a client, on average [1]
+  double hello_timeout;                    ///< from connection to Hello [5]
+  double stall_timeout;                    ///< without an acknowledgement [20]
+  double linger_timeout;                   ///< that a session outlives its connection [30]
+  const gicodec_backend* const* backends;  ///< besides the built-in ones
   size_t backend_count;
   const gicodec_host* host;  ///< NULL: operator new, one thread
 } gicodec_server_options;
@@ -47,13 +56,15 @@ typedef struct gicodec_streamed_texture {
 
 typedef struct gicodec_server gicodec_server;
 
-/// GICODEC_UNKNOWN_BACKEND, GICODEC_INVALID_SETTINGS, GICODEC_INVALID_NAME,
+/// `options`: NULL for the defaults. GICODEC_UNKNOWN_BACKEND; GICODEC_INVALID_SETTINGS for a
+/// preset, level or host that the backend or machine does not know; GICODEC_INVALID_NAME,
 /// GICODEC_INVALID_ARGUMENT, GICODEC_IO_FAILED without randomness.
 GICODEC_C_API gicodec_status gicodec_server_create(const gicodec_server_options* options,
                                                    gicodec_server** out);
 GICODEC_C_API void gicodec_server_destroy(gicodec_server* server);
 
-/// Adds a volume, also while clients are connected, and stores its number. `textures`: those that
+/// Adds a volume, also while clients are connected, and stores its number. `name`: UTF-8 of at most
+/// 255 bytes; NULL: none. `geometry`: of the first texture group's grid. `textures`: those that
 /// do not take the defaults; an array of structs of textures->struct_size.
 GICODEC_C_API gicodec_status gicodec_server_add_volume(gicodec_server* server, const char* name,
                                                        const gicodec_volume_desc* desc,
@@ -79,10 +90,11 @@ GICODEC_C_API gicodec_status gicodec_server_set_active(gicodec_server* server, u
 /// After an error close the connection.
 GICODEC_C_API gicodec_status gicodec_server_connect(gicodec_server* server, double now,
                                                     const char* origin, uint32_t* connection);
-/// Takes a message of a client. Drops a connection that breaks the rules.
+/// Takes a message of a client. Drops a connection that breaks the rules; ignores messages of
+/// dropped and unknown connections, since they may have been on their way.
 GICODEC_C_API gicodec_status gicodec_server_receive(gicodec_server* server, uint32_t connection,
                                                     const void* message, size_t size, double now);
-/// Call this when a connection is lost or closed; its session lingers.
+/// Call this when a connection is lost or closed; its session lingers. Ignores unknown ones.
 GICODEC_C_API gicodec_status gicodec_server_disconnect(gicodec_server* server, uint32_t connection,
                                                        double now);
 /// Ends a connection and its session; `reason` as in gicodec_reason_text().
@@ -96,7 +108,8 @@ GICODEC_C_API gicodec_status gicodec_server_set_visible(gicodec_server* server, 
 /// Makes the next packets for all sessions, and the messages that carry them. `time`: of what is
 /// shown, seconds. After an error other than GICODEC_INVALID_TIME go on.
 GICODEC_C_API gicodec_status gicodec_server_update(gicodec_server* server, double now, double time);
-/// Tells how long the last update took and may take, in seconds, to keep within it.
+/// Tells how long the last update took and may take, in seconds, to keep within it. Ignores values
+/// that are no times.
 GICODEC_C_API gicodec_status gicodec_server_report_update_time(gicodec_server* server,
                                                                double elapsed, double budget);
 /// Enforces timeouts between updates.
@@ -120,7 +133,7 @@ typedef struct gicodec_event {
   uint32_t type;
   uint32_t connection;
   uint32_t client;  ///< 0 before the connection has a session
-  uint32_t reason;  ///< why the server dropped it
+  uint32_t reason;  ///< GICODEC_EVENT_DROPPED: why, gicodec_reason_text(); else 0
 } gicodec_event;
 
 /// The oldest event; GICODEC_END if there is none.

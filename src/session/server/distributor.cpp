@@ -8,6 +8,8 @@
 #include "session/server/distributor_state.h"
 #include "texture/presence.h"
 
+#include <gicodec/probes.h>
+
 #include <algorithm>
 #include <numeric>
 #include <utility>
@@ -99,6 +101,13 @@ Result<Distributor> Distributor::create(const DistributorOptions& options) {
     state->options = options;
     state->backend = find_backend(options.backends, options.backend);
     if (state->backend == nullptr) return Status::unknown_backend;
+    // Settings that no texture takes are said here, not by every add_volume().
+    const TextureDesc usual = ddgi_irradiance({1, 1, 1}, Format::A2B10G10R10_UNORM_PACK32);
+    const auto encoder = state->backend->make_encoder(usual, options.settings);
+    if (!encoder && (encoder.status() == Status::invalid_settings ||
+                     encoder.status() == Status::out_of_memory)) {
+      return encoder.status();
+    }
     state->workers.resize(options.threads.count);
     return Distributor(std::move(state));
   });
