@@ -161,6 +161,10 @@ gicodec_status gicodec_player_set_growing(gicodec_player* player, uint32_t growi
   });
 }
 
+uint32_t gicodec_player_finished(const gicodec_player* player) {
+  return player != nullptr && player->player->finished() ? 1 : 0;
+}
+
 gicodec_status gicodec_player_seek(gicodec_player* player, uint64_t frame) {
   return c::call(player, [&] { return player->player->seek(frame); });
 }

@@ -24,6 +24,15 @@ class Error(Exception):
         self.status = status
         self.name = c.STATUS_NAMES.get(status, "unknown")
 
+    def __reduce__(self):
+        return _error_again, (type(self), self.status, self.args)
+
+
+def _error_again(kind: type, status: int, arguments: tuple) -> Error:
+    error = kind(status)
+    error.args = arguments
+    return error
+
 
 class ArgumentError(Error, ValueError):
     """An argument was wrong (1xx)."""

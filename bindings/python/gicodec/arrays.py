@@ -34,8 +34,10 @@ def _format_of(array: np.ndarray) -> tuple[str, bool]:
 
 def _preset(level: int | str | None) -> str:
     """0 and 1: turbo; 2 to 5, or None: fast; from 6 on: strong."""
-    if level is None or isinstance(level, str):
+    if level is None or level in PRESETS:
         return level or "fast"
+    if isinstance(level, str) or not 0 <= level <= 9:
+        raise ValueError(f"level is 0 to 9 or one of {', '.join(PRESETS)}, not {level!r}")
     return PRESETS[0 if level < 2 else 1 if level < 6 else 2]
 
 
@@ -59,15 +61,15 @@ def encode(data, level: int | str | None = None, *, max_error: float = 0, thread
 
     ``level``: "turbo", "fast", "strong", or 0 to 9. ``max_error``: 0 is lossless; below 1 relative
     to each float (below the smallest normal number, to that), from 1 on in codes or representable
-    values. ``out``: a writeable buffer for the
-    result, of which the used part is returned.
+    values. ``out``: a writeable buffer for the result, of which the used part is returned.
     """
     array = np.asarray(data)
     if array.dtype.byteorder == ">":
         array = array.astype(array.dtype.newbyteorder("<"))
     format, coloured = _format_of(array)
     if max_error and array.dtype.name not in ("float16", "float32", "uint8", "uint16", "uint32"):
-        raise ValueError(f"max_error is for floats and unsigned integers, not for {array.dtype}")
+        raise ValueError("max_error is for float16, float32 and unsigned integers of 8, 16 and 32 bits, "
+                         f"not for {array.dtype}: convert the array, or leave max_error out")
     about = {"array": json.dumps({"dtype": array.dtype.newbyteorder("=").name,
                                   "shape": list(array.shape)})}
     writer_volumes: dict[str, VolumeDesc] = {}
@@ -84,7 +86,7 @@ def encode(data, level: int | str | None = None, *, max_error: float = 0, thread
         writer_volumes["array"] = VolumeDesc(
             "textures", {"array": map_texture((1, 1, 1), format, (1, 1, 1))})
     writer = Writer(None, writer_volumes, metadata=about, preset=_preset(level),
-                              max_error=max_error, threads=threads, gop=0)
+                    max_error=max_error, threads=threads, gop=0)
     with writer:
         if array.size:
             writer.add(0, {"array": texels}, blocks="all")

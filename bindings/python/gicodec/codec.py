@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import ctypes
 import weakref
+from contextlib import contextmanager
 from typing import Iterable
 
 import numpy as np
 
 from . import _interface as c
-from ._library import Handle, Host, address, byref, library, limits_of, sized
+from ._library import Error, Handle, Host, address, byref, library, limits_of, sized
 from .description import TextureDesc, VolumeDesc, block_list
 
 
@@ -18,6 +19,8 @@ PRESETS = ("turbo", "fast", "strong")
 
 def _options(host: Host, *, backend: str, preset: str | None, level: int, gop: int | None,
              max_error, chunk: int, texture_id: int = 0) -> c.gicodec_encoder_options:
+    if gop is not None and not 0 <= gop < c.GOP_ON_REQUEST:
+        raise ValueError(f"gop is 0, for keyframes on request, or a number of packets, not {gop}")
     if preset is not None and preset not in PRESETS:
         raise ValueError(f"there is no preset {preset!r}: {', '.join(PRESETS)} are")
     options = sized(c.gicodec_encoder_options, backend=backend.encode(), level=level,
@@ -31,6 +34,21 @@ def _options(host: Host, *, backend: str, preset: str | None, level: int, gop: i
         options.max_errors, options.max_error_count = address(bounds), len(bounds)
         options._bounds = bounds
     return options
+
+
+@contextmanager
+def _names(**settings):
+    """Errors of what is created say its settings."""
+    try:
+        yield
+    except Error as error:
+        said = ", ".join(f"{name}={value!r}" for name, value in settings.items() if value)
+        if error.status == c.UNKNOWN_BACKEND:
+            said += "; the backends are native, raw, lz4 and zstd"
+        if said and error.status in (c.UNKNOWN_BACKEND, c.INVALID_SETTINGS, c.INVALID_BOUND,
+                                     c.INVALID_ARGUMENT):
+            error.args = (f"{error}: {said}",)
+        raise
 
 
 def _selection(blocks) -> tuple[int, object, int]:
@@ -85,7 +103,9 @@ class Encoder(Handle):
         options = _options(host, backend=backend, preset=preset, level=level, gop=gop,
                            max_error=max_error, chunk=chunk, texture_id=texture_id)
         self.desc = desc
-        super().__init__("encoder_create", byref(desc.struct), byref(options))
+        with _names(backend=backend, preset=preset, level=level, max_error=max_error, chunk=chunk,
+                    texture_id=texture_id, threads=threads, isa=isa):
+            super().__init__("encoder_create", byref(desc.struct), byref(options))
         bound = library.encoder_bound(self._handle, desc.block_count)
         self._packet = np.empty(bound, np.uint8)
 
@@ -157,7 +177,8 @@ class Decoder(Handle):
         options = _decoder_options(host, limits)
         self.desc = desc
         self._borrowed = weakref.WeakSet()
-        super().__init__("decoder_create", byref(desc.struct), byref(options))
+        with _names(threads=threads, isa=isa):
+            super().__init__("decoder_create", byref(desc.struct), byref(options))
 
     def decode(self, packet, out: np.ndarray | None = None) -> None:
         """Applies a packet; with ``out`` also writes the blocks that it may have changed there."""
@@ -225,14 +246,20 @@ class VolumeEncoder(Handle):
         options = _options(host, backend=backend, preset=preset, level=level, gop=gop,
                            max_error=max_error, chunk=chunk, texture_id=first_texture)
         self.textures = volume.textures
-        super().__init__("volume_encoder_create", volume._handle, byref(options))
+        with _names(backend=backend, preset=preset, level=level, max_error=max_error, chunk=chunk,
+                    first_texture=first_texture, threads=threads, isa=isa):
+            super().__init__("volume_encoder_create", volume._handle, byref(options))
 
     def encode(self, textures: dict, blocks="changed") -> list[bytes]:
         """The packets of an update, in the order in which decoders must apply them."""
         views, keep = (c.gicodec_const_view * len(self.textures))(), []
-        for place, (name, desc) in enumerate(self.textures.items()):
+        for name in self.textures:
             if name not in textures:
                 raise KeyError(f"the volume has a texture {name!r}, which was not given")
+        if others := set(textures) - set(self.textures):
+            raise KeyError(f"the volume has no texture {sorted(map(str, others))[0]!r}: it has "
+                           f"{', '.join(self.textures)}")
+        for place, (name, desc) in enumerate(self.textures.items()):
             views[place], array = desc.view_of(textures[name], name)
             keep.append(array)
         selection, chosen, count = _selection(blocks)
@@ -267,7 +294,8 @@ class VolumeDecoder(Handle):
         options = _decoder_options(host, limits, first_texture)
         self.textures = volume.textures
         self._first, self._changed = first_texture, {}
-        super().__init__("volume_decoder_create", volume._handle, byref(options))
+        with _names(threads=threads, isa=isa, first_texture=first_texture):
+            super().__init__("volume_decoder_create", volume._handle, byref(options))
 
     def decode(self, packets: Iterable[bytes]) -> None:
         """Applies the packets of an update, in their order."""

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import json
-import mmap
 import os
 import pathlib
 import threading
@@ -18,12 +18,12 @@ from ._library import (Error, Handle, Host, address, byref, decoded, error_of, l
                        sized, text_of)
 from .codec import borrowed
 from .description import TextureDesc, VolumeDesc
+from .source import FileSource
 
 
-def _unknown_version(data: np.ndarray) -> str:
+def _unknown_version(head: bytes) -> str:
     major, minor, readable = ctypes.c_uint32(), ctypes.c_uint32(), ctypes.c_uint32()
-    library.container_version(data.ctypes.data, data.nbytes, byref(major), byref(minor),
-                              byref(readable))
+    library.container_version(head, len(head), byref(major), byref(minor), byref(readable))
     return (f"the container has version {major.value}.{minor.value}, and gicodec "
             f"{decoded(library.version_text())} reads version {readable.value}: take a newer gicodec")
 
@@ -39,12 +39,17 @@ class _Player(Handle):
         options = sized(c.gicodec_player_options, host=address(host.struct))
         limits = limits_of(file._limits)
         options.limits = address(limits) if limits else None
+        self._source = FileSource(file._stream, file._turn) if file._stream else None
         try:
-            super().__init__("player_open_memory", file._bytes.ctypes.data, file._bytes.nbytes,
-                             byref(options))
+            if self._source is None:
+                super().__init__("player_open_memory", file._bytes.ctypes.data, file._bytes.nbytes,
+                                 byref(options))
+            else:
+                with self._source.errors():
+                    super().__init__("player_open", byref(self._source.struct), byref(options))
         except Error as error:
             if error.status == c.UNSUPPORTED_VERSION:
-                error.args = (_unknown_version(file._bytes),)
+                error.args = (_unknown_version(file._head()),)
             if error.status == c.NOT_GICODEC:
                 error.args = (f"{file._path or 'the input'} is no .gic file; KTX2, DDS, EXR and raw files "
                               "become one by the tool: gicodec encode -o x.gic FILE...",)
@@ -59,9 +64,13 @@ class _Player(Handle):
             library.player_set_layout(self._handle, texture,
                                       byref(file._desc(texture).with_tiling(tiling).struct))
 
+    def _errors(self):
+        return contextlib.nullcontext() if self._source is None else self._source.errors()
+
     def frames(self) -> list[int]:
         at, count = ctypes.c_void_p(), ctypes.c_size_t()
-        status = library.status_of("player_frames", self._handle, byref(at), byref(count))
+        with self._errors():
+            status = library.status_of("player_frames", self._handle, byref(at), byref(count))
         if status == c.UNKNOWN_FRAME:
             raise error_of(c.CORRUPT, "the index of the frames")
         if status != c.OK:
@@ -73,10 +82,11 @@ class _Player(Handle):
         """Decodes a frame by its place; the one behind the last is decoded without a seek."""
         if place == self.place:
             return
-        if place != self.place + 1:
-            library.player_seek(self._handle, frames[place])
-        self.place = -2  # nowhere, until it is decoded
-        library.player_next(self._handle)
+        with self._errors():
+            if place != self.place + 1:
+                library.player_seek(self._handle, frames[place])
+            self.place = -2  # nowhere, until it is decoded
+            library.player_next(self._handle)
         self.place = place
 
 
@@ -108,6 +118,15 @@ class Texture:
     @property
     def dtype(self) -> np.dtype:
         return self.desc.dtype
+
+    @property
+    def ndim(self) -> int:
+        return len(self.shape)
+
+    @property
+    def size(self) -> int:
+        """Numbers of a frame."""
+        return int(np.prod(self.shape))
 
     @property
     def largest_error(self) -> float:
@@ -231,16 +250,23 @@ class File:
 
     def __init__(self, source, *, threads: int = 1, limits: dict | None = None) -> None:
         self._threads, self._limits = threads, limits
-        self._path = None
+        self._path, self._stream, self._turn = None, None, threading.Lock()
         if isinstance(source, (str, os.PathLike)):
             self._path = os.fspath(source)
-            with pathlib.Path(source).open("rb") as stream:
-                size = os.fstat(stream.fileno()).st_size
-                source = mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ) if size else b""
+            self._stream = pathlib.Path(source).open("rb", buffering=0)
+            if not self._stream.seekable():  # a pipe
+                with self._stream:
+                    source = self._stream.readall()
+                self._stream = None
         elif hasattr(source, "read"):
             source = source.read()
-        self._bytes = np.frombuffer(source, np.uint8)
-        self._first = _Player(self, None)
+        self._bytes = np.frombuffer(b"" if self._stream else source, np.uint8)
+        try:
+            self._first = _Player(self, None)
+        except BaseException:
+            if self._stream:
+                self._stream.close()
+            raise
         self._address = library.player_container(self._first._handle)
         self._json = json.loads(text_of("container_json", self._container))
         self.frames = self._first.frames()
@@ -268,9 +294,20 @@ class File:
     def metadata(self) -> dict[str, str]:
         return self._metadata(c.METADATA_CONTAINER, 0)
 
+    @property
+    def is_complete(self) -> bool:
+        """False for a file that was cut off or is growing: ``frames`` has those that are whole."""
+        return library.player_finished(self._first._handle) != 0
+
     def json(self) -> dict:
         """All descriptions."""
         return self._json
+
+    def _head(self) -> bytes:
+        if self._stream is None:
+            return self._bytes[:16].tobytes()
+        self._stream.seek(0)
+        return self._stream.read(16)
 
     def _desc(self, texture: int) -> TextureDesc:
         struct = sized(c.gicodec_texture_desc)
@@ -295,6 +332,18 @@ class File:
     def __len__(self) -> int:
         return len(self.textures)
 
+    def __contains__(self, name: object) -> bool:
+        return name in self.textures
+
+    def keys(self):
+        return self.textures.keys()
+
+    def values(self):
+        return self.textures.values()
+
+    def items(self):
+        return self.textures.items()
+
     def close(self) -> None:
         """Frees the decoders. Arrays that were read stay."""
         for volume in self.volumes:
@@ -302,6 +351,8 @@ class File:
                 for player in texture._players.values():
                     player.close()
         self._first.close()
+        if self._stream is not None:
+            self._stream.close()
 
     def __enter__(self) -> File:
         return self
@@ -309,8 +360,11 @@ class File:
     def __exit__(self, *_) -> None:
         self.close()
 
+    __reduce_ex__ = Handle.__reduce_ex__
+
     def __repr__(self) -> str:
-        lines = [f"<File {self._path or 'in memory'}: {len(self.frames)} frames"]
+        cut = "" if self._first.is_closed or self.is_complete else ", cut off or growing"
+        lines = [f"<File {self._path or 'in memory'}: {len(self.frames)} frames{cut}"]
         lines += [f"  {name}: {texture.shape} {texture.dtype} {texture.format or 'custom'}"
                   for name, texture in self.textures.items()]
         return "\n".join(lines) + ">"

@@ -6,9 +6,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numcodecs.abc import Codec
-from numcodecs.compat import ensure_ndarray_like, ndarray_copy
-from numcodecs.registry import register_codec
+
+try:
+    from numcodecs.abc import Codec
+    from numcodecs.compat import ensure_ndarray_like, ndarray_copy
+    from numcodecs.registry import register_codec
+except ImportError as error:
+    raise ImportError("gicodec.numcodecs needs numcodecs: pip install gicodec[zarr]") from error
 
 from . import arrays
 

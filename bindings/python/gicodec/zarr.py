@@ -10,9 +10,13 @@ import asyncio
 from dataclasses import dataclass
 
 import numpy as np
-from zarr.abc.codec import ArrayBytesCodec
-from zarr.core.common import parse_named_configuration
-from zarr.registry import register_codec
+
+try:
+    from zarr.abc.codec import ArrayBytesCodec
+    from zarr.core.common import parse_named_configuration
+    from zarr.registry import register_codec
+except ImportError as error:
+    raise ImportError("gicodec.zarr needs zarr 3: pip install gicodec[zarr]") from error
 
 from . import arrays
 

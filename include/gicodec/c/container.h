@@ -177,6 +177,9 @@ GICODEC_C_API gicodec_status gicodec_player_next(gicodec_player* player);
 /// Not 0 while the source grows: gicodec_player_next() then ends no frame whose packets may not all
 /// have arrived; it returns GICODEC_TRUNCATED, and goes on with that frame when it is called again.
 GICODEC_C_API gicodec_status gicodec_player_set_growing(gicodec_player* player, uint32_t growing);
+/// Not 0 once the player found the container's end mark, which gicodec_player_open() does if the
+/// source can seek. A container without one was cut off, or is growing.
+GICODEC_C_API uint32_t gicodec_player_finished(const gicodec_player* player);
 /// The next gicodec_player_next() applies that frame. GICODEC_UNKNOWN_FRAME.
 GICODEC_C_API gicodec_status gicodec_player_seek(gicodec_player* player, uint64_t frame);
 /// The frame of the last gicodec_player_next().
