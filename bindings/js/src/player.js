@@ -14,6 +14,7 @@ export class Player {
   #owned = false;   // its chunks are nobody else's
   #signal;
   #turn = Promise.resolve();
+  #from = '';  // what the server says of its response
 
   constructor(host, signal) {
     this.#host = host;
@@ -37,6 +38,7 @@ export class Player {
       }
     } catch (error) {
       player.close();
+      if (error.code === 'not_gicodec') error.message += player.#from;
       throw error;
     }
   }
@@ -50,6 +52,8 @@ export class Player {
     if (typeof Response !== 'undefined' && source instanceof Response) {
       checkResponse(source);
       this.#owned = true;
+      const type = source.headers.get('content-type');
+      this.#from = `: ${source.url || 'the response'} brings ${type ?? 'bytes without a content type'}`;
       source = source.body ?? new Uint8Array();
     } else if (typeof Blob !== 'undefined' && source instanceof Blob) {
       this.#owned = true;
@@ -116,7 +120,7 @@ export class Player {
     });
   }
 
-  /** All frames from here on, by number. */
+  /** All frames from here on, by number. After a break the player goes on where it is. */
   async* [Symbol.asyncIterator]() {
     for (let frame = await this.next(); frame !== null; frame = await this.next()) yield frame;
   }

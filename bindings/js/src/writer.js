@@ -1,9 +1,10 @@
 // Containers, written frame by frame: with the encoders that make their packets.
 import {createVolume, texturesOf} from './description.js';
 import {VolumeEncoder} from './encoder.js';
+import {GicodecError} from './error.js';
 import {bytesOf, frameNumber} from './instance.js';
 import {
-  METADATA_CONTAINER, METADATA_TEXTURE, METADATA_VOLUME, geometry as geometryStruct,
+  METADATA_CONTAINER, METADATA_TEXTURE, METADATA_VOLUME, OUT_OF_ORDER, geometry as geometryStruct,
 } from './interface.js';
 
 /** Writes a container of several volumes. */
@@ -11,6 +12,7 @@ export class Writer {
   #instance;
   #handle;
   #encoders = new Map();
+  #ended = false;
 
   /** @internal */
   static async create(module, volumes, {scene = '', metadata = {}, ...options} = {}) {
@@ -58,6 +60,7 @@ export class Writer {
    * volume. Frames do not decrease.
    */
   add(frame, volumes, blocks = 'changed') {
+    this.#go();
     frameNumber(frame);  // before an encoder goes on
     const [first, ...others] = this.#encoders.keys();
     const bare = others.length === 0 && volumes[first]?.constructor !== Object;
@@ -71,20 +74,30 @@ export class Writer {
 
   /** Adds a packet that another encoder made; its texture is the one that the packet names. */
   addPacket(frame, packet) {
+    this.#go();
     this.#instance.with((memory) => this.#instance.check('writer_add',
         [this.#handle, frameNumber(frame), memory.put(packet), bytesOf(packet).length], {what: `frame ${frame}`}));
   }
 
   /** The bytes since the last call, for those that send the container while it grows. */
   take() {
+    this.#go();
     this.#instance.check('writer_flush', [this.#handle]);
     return this.#bytes();
   }
 
   /** Ends the container: its bytes, or those since take(). */
   finish() {
+    this.#go();
     this.#instance.check('writer_finish', [this.#handle]);
+    this.#ended = true;
     return this.#bytes();
+  }
+
+  #go() {
+    if (this.#ended) {
+      throw new GicodecError(OUT_OF_ORDER, 'finish() ended this container: create another Writer');
+    }
   }
 
   #bytes() {

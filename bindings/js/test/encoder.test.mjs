@@ -89,6 +89,7 @@ test('a container, with geometry and notes', async () => {
     pieces.push(writer.take());
   }
   pieces.push(writer.finish());
+  assert.throws(() => writer.finish(), /create another Writer/);
   const player = await open(new Blob(pieces));
   assert.equal(player.scene, 'villa');
   assert.deepEqual(player.metadata, {made: 'here'});

@@ -135,6 +135,8 @@ test('an AbortSignal ends it', async () => {
 test('errors say what and where', async () => {
   await assert.rejects(open(new Uint8Array()), {code: 'truncated'});
   await assert.rejects(open(golden('bad_magic.gic')), {code: 'not_gicodec'});
+  const page = new Response('<!doctype html><title>Not here</title>', {headers: {'content-type': 'text/html'}});
+  await assert.rejects(open(page), {code: 'not_gicodec', message: /brings text\/html/});
   await assert.rejects(open(golden('bad_major.gic')),
       {code: 'unsupported_version', message: /has version 3\.0, and gicodec \d.* reads version 1: take a newer/});
   await assert.rejects(open(new Response('gone', {status: 404, statusText: 'Not Found'})), /404 Not Found/);

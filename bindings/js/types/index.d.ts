@@ -32,7 +32,8 @@ export interface PlayerOptions {
 
 /**
  * Plays a container, in order or from any frame on. Calls run one after the other. Each player has
- * memory of its own, which close() frees.
+ * memory of its own, which close() frees. It has one place in the container: loops over one player
+ * share its frames, and a loop that is left does not close it.
  */
 export interface Player extends AsyncIterable<number> {
   readonly scene: string;
@@ -46,8 +47,9 @@ export interface Player extends AsyncIterable<number> {
   /** The numbers of the frames that can be sought; of a stream: those that have arrived. */
   frames(): Promise<number[]>;
   /**
-   * A texture as of the last frame (after the first next()), guard bands included, bit by bit. With `into` in that array, which a
-   * worker returns as another one over the same memory: go on with what this resolves to.
+   * A texture as of the last frame (after the first next()), guard bands included, bit by bit. With
+   * `into` in that array, which a worker returns as another one over the same memory: go on with what
+   * this resolves to.
    */
   read(texture: string | number): Promise<Texels>;
   read<T extends ArrayBufferView>(texture: string | number, into: T): Promise<T>;
