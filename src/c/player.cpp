@@ -165,6 +165,10 @@ uint32_t gicodec_player_finished(const gicodec_player* player) {
   return player != nullptr && player->player->finished() ? 1 : 0;
 }
 
+uint64_t gicodec_player_memory(const gicodec_player* player) {
+  return player == nullptr ? 0 : player->player->memory();
+}
+
 gicodec_status gicodec_player_seek(gicodec_player* player, uint64_t frame) {
   return c::call(player, [&] { return player->player->seek(frame); });
 }

@@ -518,6 +518,7 @@ CALLS = {
     "gicodec_player_next": (ctypes.c_int32, (ctypes.c_void_p,)),
     "gicodec_player_set_growing": (ctypes.c_int32, (ctypes.c_void_p, ctypes.c_uint32,)),
     "gicodec_player_finished": (ctypes.c_uint32, (ctypes.c_void_p,)),
+    "gicodec_player_memory": (ctypes.c_uint64, (ctypes.c_void_p,)),
     "gicodec_player_seek": (ctypes.c_int32, (ctypes.c_void_p, ctypes.c_uint64,)),
     "gicodec_player_frame": (ctypes.c_uint64, (ctypes.c_void_p,)),
     "gicodec_player_frames": (ctypes.c_int32, (ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p,)),

@@ -76,11 +76,18 @@ class Pointer(int):
 
     def __new__(cls, address: int, of: str):
         pointer = super().__new__(cls, address)
-        pointer.turn, pointer.of, pointer.is_closed = threading.RLock(), of, False
+        pointer.turn, pointer.of, pointer.is_closed, pointer.owner = threading.RLock(), of, False, None
+        return pointer
+
+    @classmethod
+    def part(cls, address: int, owner: Pointer) -> Pointer:
+        """Of what lives as long as its owner: calls take the owner's turn."""
+        pointer = cls(address, owner.of)
+        pointer.turn, pointer.owner = owner.turn, owner
         return pointer
 
     def check(self) -> Pointer:
-        if self.is_closed:
+        if (self if self.owner is None else self.owner).is_closed:
             raise ArgumentError(c.INVALID_ARGUMENT, f"the {self.of} is closed")
         return self
 
@@ -103,7 +110,8 @@ class _Library:
             if not arguments or not isinstance(arguments[0], Pointer):
                 return function(*arguments)
             with arguments[0].turn:
-                return function(arguments[0].check(), *arguments[1:])
+                arguments[0].check()
+                return function(*arguments)
 
         return in_turn
 
@@ -134,12 +142,24 @@ class _Library:
 library = _Library()
 
 
+# ctypes cuts numbers that do not fit.
+_MOST_UNSIGNED = {ctypes.c_uint32: 2**32 - 1, ctypes.c_uint64: 2**64 - 1}
+_MOST = {ctypes.c_int32: 2**31 - 1}
+
+
 def sized(kind: type, **fields):
     """A struct of its own size; its fields by name."""
     for name in fields:
         if not hasattr(kind, name):
             known = ", ".join(field for field, _ in kind._fields_[1:])
             raise TypeError(f"there is no {name!r}: {known} are")
+    for name, type in kind._fields_:
+        most = _MOST.get(type)
+        if most is not None and not -most - 1 <= fields.get(name, 0) <= most:
+            raise ValueError(f"{name} is at most {most}, not {fields[name]}")
+        unsigned = _MOST_UNSIGNED.get(type)
+        if unsigned is not None and not 0 <= fields.get(name, 0) <= unsigned:
+            raise ValueError(f"{name} is 0 to {unsigned}, not {fields[name]}")
     return kind(struct_size=ctypes.sizeof(kind), **fields)
 
 
@@ -204,7 +224,7 @@ class Host:
     """Threads and an instruction set for a handle; must live as long as the create() call."""
 
     def __init__(self, threads: int = 1, isa: str | None = None) -> None:
-        self.struct = sized(c.gicodec_host, threads=threads, isa=isa.encode() if isa else None)
+        self.struct = sized(c.gicodec_host, threads=threads, isa=coded(isa) if isa else None)
 
 
 def limits_of(limits: dict | None):
@@ -214,3 +234,16 @@ def limits_of(limits: dict | None):
 
 def decoded(name: bytes | None) -> str | None:
     return None if name is None else name.decode()
+
+
+def coded(text: str) -> bytes:
+    """Text for the library, which ends at a zero."""
+    data = text.encode()
+    if 0 in data:
+        raise ValueError(f"{text!r} has a zero in it")
+    return data
+
+
+def shown(name: str) -> str:
+    """A name from a file or a server, safe for a terminal."""
+    return "".join(one if one.isprintable() else repr(one)[1:-1] for one in name)

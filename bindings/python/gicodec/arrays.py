@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import json
+import math
 
 import numpy as np
 
+from . import _interface as c
+from ._library import error_of
 from .codec import PRESETS
 from .container import File
 from .description import VolumeDesc, map_texture
@@ -18,14 +21,18 @@ _FORMATS = {"float16": "R16_SFLOAT", "float32": "R32_SFLOAT", "uint8": "R8_UINT"
             "uint64": "R32G32_UINT"}
 _COLOURS = {2: "R{0}G{0}", 3: "R{0}G{0}B{0}", 4: "R{0}G{0}B{0}A{0}"}
 _BLOCKS = 65535  # along an axis
-_ROW = 4096  # numbers in a row of an array that is longer than a texture may be
+_MOST_AXES = 64  # as numpy
+_BYTES = set("bBhHiIlLqQefd?c")  # of memory that may be written as bytes
+_ROW = 4096  # most numbers in a row of an array that has one axis, or is longer than a texture may be
+_SHORT = 1024
 
 
 def _format_of(array: np.ndarray) -> tuple[str, bool]:
     """A format, and whether the last axis holds its components."""
     name = _FORMATS.get(array.dtype.name)
     if name is None:
-        raise TypeError(f"arrays of {array.dtype} cannot be encoded: {', '.join(_FORMATS)} can")
+        raise TypeError(f"arrays of {array.dtype} cannot be encoded: {', '.join(_FORMATS)} can; view others "
+                        "as one of these, e.g. data.view('float32') or .view('uint8')")
     bits, kind = name[1:].split("_")[0], name.split("_")[1]
     if array.ndim >= 3 and array.shape[-1] in _COLOURS and "G" not in name:
         return _COLOURS[array.shape[-1]].format(bits) + "_" + kind, True
@@ -63,21 +70,25 @@ def encode(data, level: int | str | None = None, *, max_error: float = 0, thread
     to each float (below the smallest normal number, to that), from 1 on in codes or representable
     values. ``out``: a writeable buffer for the result, of which the used part is returned.
     """
+    if isinstance(data, np.ma.MaskedArray):
+        raise TypeError("a masked array has two parts: encode data.filled(…), or .data and .mask each")
     array = np.asarray(data)
-    if array.dtype.byteorder == ">":
-        array = array.astype(array.dtype.newbyteorder("<"))
+    dtype = array.dtype
+    if dtype.byteorder == ">":
+        array = array.astype(dtype.newbyteorder("<"))
     format, coloured = _format_of(array)
     if max_error and array.dtype.name not in ("float16", "float32", "uint8", "uint16", "uint32"):
         raise ValueError("max_error is for float16, float32 and unsigned integers of 8, 16 and 32 bits, "
                          f"not for {array.dtype}: convert the array, or leave max_error out")
-    about = {"array": json.dumps({"dtype": array.dtype.newbyteorder("=").name,
-                                  "shape": list(array.shape)})}
+    about = {"array": json.dumps({"dtype": dtype.str, "shape": list(array.shape)})}
     writer_volumes: dict[str, VolumeDesc] = {}
     sides = _sides(array.shape[:-1] if coloured else array.shape)
     texels = np.ascontiguousarray(array).reshape(-1).view(np.uint8)
     block = _block(sides)
-    if any(side > _BLOCKS * most for side, most in zip(sides, block)):
-        format, sides = _FORMATS[array.dtype.name], (_ROW, -(-array.size // _ROW), 1)
+    is_line = not coloured and max(sides) == array.size > _SHORT  # blocks of one row would be small
+    if is_line or any(side > _BLOCKS * most for side, most in zip(sides, block)):
+        row = min(_ROW, 32 * math.ceil(math.sqrt(array.size) / 32))
+        format, sides = _FORMATS[array.dtype.name], (row, -(-array.size // row), 1)
         texels = np.pad(texels, (0, sides[0] * sides[1] * array.itemsize - texels.size))
         block = _block(sides)
     if array.size:
@@ -93,7 +104,10 @@ def encode(data, level: int | str | None = None, *, max_error: float = 0, thread
     coded = writer.getvalue()
     if out is None:
         return coded
-    target = memoryview(out).cast("B")
+    target = memoryview(out)
+    if target.format.lstrip("@=<>!") not in _BYTES:
+        raise TypeError(f"out is memory for bytes or numbers, not of format {target.format!r}")
+    target = target.cast("B")
     if target.readonly or target.nbytes < len(coded):
         raise ValueError(f"out must be writeable and have {len(coded)} bytes")
     target[:len(coded)] = coded
@@ -101,8 +115,15 @@ def encode(data, level: int | str | None = None, *, max_error: float = 0, thread
 
 
 def decode(data, *, out: np.ndarray | None = None, limits: dict | None = None,
-           threads: int = 1) -> np.ndarray:
-    """The array of encode(); into ``out``, an array of its shape and type, if given."""
+           threads: int = 1, expected: tuple[int, np.dtype | None] | None = None) -> np.ndarray:
+    """The array of encode(); into ``out``, an array of its shape and type, if given.
+
+    ``expected``: its bytes, and its type if known, else a ValueError before anything is decoded. For
+    bytes of strangers, give it or ``limits``.
+    """
+    if expected is not None and limits is None:
+        limits = {"max_texture_bytes": max(1 << 30, 2 * expected[0]), "max_packet_bytes": max(1 << 30, 2 * expected[0]),
+                  "max_work_bytes": max(2 << 30, 2 * expected[0]), "max_total_bytes": max(4 << 30, 8 * expected[0])}
     with File(data, threads=threads, limits=limits) as file:
         about = file.metadata.get("array")
         if about is None or "array" not in file:
@@ -110,25 +131,29 @@ def decode(data, *, out: np.ndarray | None = None, limits: dict | None = None,
         try:
             described = json.loads(about)
             shape, dtype = tuple(described["shape"]), np.dtype(described["dtype"])
-        except (ValueError, KeyError, TypeError) as error:
+            if len(shape) > _MOST_AXES or not all(type(side) is int for side in shape):
+                raise ValueError(f"shapes are of at most {_MOST_AXES} whole numbers")
+        except (ValueError, KeyError, TypeError, RecursionError) as error:
             raise ValueError("the description of the array is damaged") from error
         texture = file["array"]
-        count = 1
-        for side in shape:
-            count *= side
+        count = math.prod(shape)
+        if expected is not None and (count * dtype.itemsize, expected[1] or dtype) != (expected[0], dtype):
+            raise ValueError(f"the bytes hold {count} numbers of {dtype}, not {expected[0]} bytes"
+                             f"{f' of {expected[1]}' if expected[1] else ''}")
         behind = texture.desc.nbytes - count * dtype.itemsize
         if dtype.name not in _FORMATS or min(shape, default=0) < 0 or (
                 count and not 0 <= behind < _ROW * dtype.itemsize or behind % dtype.itemsize):
             raise ValueError("the description of the array does not fit its texture")
         if out is None:
             out = np.empty(shape, dtype)
-        elif out.shape != shape or out.dtype != dtype or not out.flags.c_contiguous:
+        elif not isinstance(out, np.ndarray) or out.shape != shape or not out.flags.c_contiguous or (
+                out.dtype.newbyteorder("=") != dtype.newbyteorder("=")):
             raise ValueError(f"out must be a C-contiguous array of shape {shape} and type {dtype}")
         if count and not file.frames:
-            raise ValueError("the bytes are cut off: the array itself is missing")
-        if count and behind == 0:
+            raise error_of(c.TRUNCATED, "the array itself is missing")
+        if count and behind == 0 and out.dtype.byteorder != ">":
             texture.read(0, out.reshape(-1).view(np.uint8))
         elif count:
-            texels = np.empty(texture.desc.nbytes, np.uint8)
-            out[...] = texture.read(0, texels).view(dtype)[:count].reshape(shape)
+            texels = texture.read(0, np.empty(texture.desc.nbytes, np.uint8))
+            out[...] = texels.view(dtype.newbyteorder("<"))[:count].reshape(shape)
         return out

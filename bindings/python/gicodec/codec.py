@@ -10,7 +10,7 @@ from typing import Iterable
 import numpy as np
 
 from . import _interface as c
-from ._library import Error, Handle, Host, address, byref, library, limits_of, sized
+from ._library import Error, Handle, Host, address, byref, coded, library, limits_of, sized
 from .description import TextureDesc, VolumeDesc, block_list
 
 
@@ -23,8 +23,8 @@ def _options(host: Host, *, backend: str, preset: str | None, level: int, gop: i
         raise ValueError(f"gop is 0, for keyframes on request, or a number of packets, not {gop}")
     if preset is not None and preset not in PRESETS:
         raise ValueError(f"there is no preset {preset!r}: {', '.join(PRESETS)} are")
-    options = sized(c.gicodec_encoder_options, backend=backend.encode(), level=level,
-                    preset=preset.encode() if preset else None, chunk=chunk,
+    options = sized(c.gicodec_encoder_options, backend=coded(backend), level=level,
+                    preset=coded(preset) if preset else None, chunk=chunk,
                     gop=c.GOP_ON_REQUEST if gop == 0 else gop or 0, texture_id=texture_id,
                     host=address(host.struct))
     if isinstance(max_error, (int, float)):
@@ -132,7 +132,7 @@ class Encoder(Handle):
         library.encoder_request_keyframe(self._handle)
 
     def set_preset(self, preset: str) -> None:
-        library.encoder_set_preset(self._handle, preset.encode())
+        library.encoder_set_preset(self._handle, coded(preset))
 
     def set_active(self, active) -> None:
         """Leaves out inactive blocks: a truth value for each; None: all are active."""
@@ -182,13 +182,14 @@ class Decoder(Handle):
 
     def decode(self, packet, out: np.ndarray | None = None) -> None:
         """Applies a packet; with ``out`` also writes the blocks that it may have changed there."""
-        self._check_borrowed()
         data = np.frombuffer(packet, np.uint8)
         view = None
         if out is not None:
             view, out = self.desc.target(out)
-        library.decoder_decode(self._handle, data.ctypes.data, data.nbytes,
-                               None if view is None else byref(view))
+        with self._handle.turn:
+            self._check_borrowed()
+            library.decoder_decode(self._handle, data.ctypes.data, data.nbytes,
+                                   None if view is None else byref(view))
 
     def read(self, out: np.ndarray | None = None, blocks=None) -> np.ndarray:
         """The texture; with a list of blocks just these, into ``out``."""
@@ -202,9 +203,10 @@ class Decoder(Handle):
         """All blocks without guard bands, [block, slice, row, column, component], not copied and
         read-only. While such an array is in use, decode() and close() raise a BufferError."""
         size = ctypes.c_size_t()
-        at = library.decoder_records(self._handle, byref(size))
-        memory = _Borrowed(self, at, self.desc)
-        self._borrowed.add(memory)
+        with self._handle.turn:
+            at = library.decoder_records(self._handle, byref(size))
+            memory = _Borrowed(self, at, self.desc)
+            self._borrowed.add(memory)
         return np.asarray(memory)
 
     def _check_borrowed(self) -> None:
@@ -212,8 +214,9 @@ class Decoder(Handle):
             raise BufferError("an array of records() is in use: delete it, or copy it")
 
     def close(self) -> None:
-        self._check_borrowed()
-        super().close()
+        with self._handle.turn:
+            self._check_borrowed()
+            super().close()
 
     @property
     def changed(self) -> np.ndarray:

@@ -10,7 +10,8 @@ import numpy as np
 
 from . import _interface as c
 from . import formats
-from ._library import Handle, Pointer, byref, decoded, error_of, library, sized, text_of
+from ._library import (Handle, Pointer, byref, coded, decoded, error_of, library, shown, sized,
+                       text_of)
 
 TILINGS = ("atlas_xy_z", "atlas_xz_y", "atlas_x_yz", "slices_xz_y", "slices_xy_z", "blocks",
            "atlas_yz_x", "slices_yx_z")
@@ -121,6 +122,8 @@ class TextureDesc:
         """A view to write to; ``out`` is an array of this shape and type, None for a new one."""
         if out is None:
             out = self.empty()
+        if not isinstance(out, np.ndarray):
+            raise TypeError(f"out is a numpy array, not {type(out).__name__}")
         if not out.flags.c_contiguous or not out.flags.writeable or out.nbytes < self.nbytes:
             raise ValueError(f"out must be a writeable C-contiguous array of {self.nbytes} bytes, "
                              f"e.g. of shape {self.shape} and dtype {self.dtype}")
@@ -192,7 +195,7 @@ class VolumeDesc(Handle):
             if not isinstance(desc, TextureDesc):
                 raise TypeError(f"the texture {name!r} is described by a TextureDesc, e.g. of map_texture(), "
                                 f"not by {type(desc).__name__}")
-            library.volume_desc_add_texture(self._handle, name.encode(), byref(desc.struct))
+            library.volume_desc_add_texture(self._handle, coded(name), byref(desc.struct))
         if textures:
             library.with_problem("volume_desc_check", self._handle)
 
@@ -210,7 +213,7 @@ class VolumeDesc(Handle):
         if layout not in known:
             raise ValueError(f"there is no layout {layout!r}: {', '.join(known)} are")
         handle = ctypes.c_void_p()
-        library.volume_desc_from_layout(layout.encode(), *grid, byref(handle))
+        library.volume_desc_from_layout(coded(layout), *grid, byref(handle))
         return cls.adopt(handle.value)
 
     @property
@@ -232,7 +235,7 @@ class VolumeDesc(Handle):
         return json.loads(text_of("volume_desc_json", self._handle))
 
     def __repr__(self) -> str:
-        names = ", ".join(self.textures)
+        names = ", ".join(map(shown, self.textures))
         return f"<VolumeDesc of {self.kind}: {names}>"
 
 

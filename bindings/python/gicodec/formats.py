@@ -7,7 +7,7 @@ import difflib
 import numpy as np
 
 from . import _interface as c
-from ._library import decoded, library
+from ._library import coded, decoded, library
 
 _KINDS = {c.COMPONENT_UNORM: "u", c.COMPONENT_SNORM: "i", c.COMPONENT_UINT: "u",
           c.COMPONENT_SFLOAT: "f", c.COMPONENT_OPAQUE: "u"}
@@ -22,7 +22,7 @@ def names() -> list[str]:
 def number(format: str | int) -> int:
     """VkFormat's number."""
     if isinstance(format, str):
-        found = library.format_from_name(format.encode())
+        found = library.format_from_name(coded(format))
         if found == 0:
             near = difflib.get_close_matches(format.upper(), names(), 3, 0.4)
             raise ValueError(f"there is no format {format!r}: formats have the names of VkFormat, e.g. "

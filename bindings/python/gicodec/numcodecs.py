@@ -26,11 +26,15 @@ class Gicodec(Codec):
         self.level, self.max_error = level, max_error
 
     def encode(self, buf) -> bytes:
-        return arrays.encode(np.asarray(ensure_ndarray_like(buf)), self.level,
-                             max_error=self.max_error)
+        array = np.asarray(ensure_ndarray_like(buf))
+        if array.flags.f_contiguous:  # Zarr views the result as memory of the same order
+            array = array.T
+        return arrays.encode(array, self.level, max_error=self.max_error)
 
     def decode(self, buf, out=None):
-        array = arrays.decode(np.asarray(ensure_ndarray_like(buf)).view(np.uint8).tobytes())
+        data = np.asarray(ensure_ndarray_like(buf)).view(np.uint8).tobytes()
+        expected = None if out is None else (ensure_ndarray_like(out).nbytes, None)
+        array = arrays.decode(data, expected=expected)
         return array if out is None else ndarray_copy(array, out)
 
     def get_config(self) -> dict:

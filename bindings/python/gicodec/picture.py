@@ -10,6 +10,7 @@ import zlib
 import numpy as np
 
 MAX_SIDE = 1024
+MAX_BYTES = 64 << 20  # larger textures are described alone
 
 
 def png(pixels: np.ndarray) -> bytes:
@@ -42,7 +43,7 @@ def pixels_of(desc, array: np.ndarray) -> np.ndarray:
 def html(texture, caption: str) -> str:
     """A texture's first frame as an image, below its caption."""
     text = f"<p><code>{escape.escape(caption)}</code></p>"
-    if len(texture) == 0:
+    if len(texture) == 0 or texture.desc.nbytes > MAX_BYTES:
         return text
     try:
         data = png(pixels_of(texture.desc, texture.read(0)))

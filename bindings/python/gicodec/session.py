@@ -8,7 +8,8 @@ from typing import Iterator
 import numpy as np
 
 from . import _interface as c
-from ._library import (Handle, Host, address, byref, decoded, error_of, library, limits_of, sized)
+from ._library import (Handle, Host, address, byref, coded, decoded, error_of, library, limits_of,
+                       shown, sized)
 from .codec import borrowed
 from .description import VolumeDesc, block_list
 
@@ -43,10 +44,11 @@ class ClientVolume:
     def changed(self, name: str, after: int = 0) -> np.ndarray:
         """Blocks that were replaced after the update of that serial, ascending."""
         blocks, count = ctypes.c_void_p(), ctypes.c_size_t()
-        library.client_changed(self._client._handle, self.number, self._place(name), after,
-                               byref(blocks), byref(count))
-        size = count.value * 4
-        return np.frombuffer(ctypes.string_at(blocks.value, size) if size else b"", np.uint32)
+        with self._client._handle.turn:
+            library.client_changed(self._client._handle, self.number, self._place(name), after,
+                                   byref(blocks), byref(count))
+            size = count.value * 4
+            return np.frombuffer(ctypes.string_at(blocks.value, size) if size else b"", np.uint32)
 
     @property
     def geometry(self) -> dict:
@@ -55,7 +57,7 @@ class ClientVolume:
         return {name: tuple(value) for name, value in _fields(struct).items()}
 
     def __repr__(self) -> str:
-        return f"<ClientVolume {self.name!r}: {', '.join(self.textures)}>"
+        return f"<ClientVolume {self.name!r}: {', '.join(map(shown, self.textures))}>"
 
 
 class Client(Handle):
@@ -71,7 +73,7 @@ class Client(Handle):
                  budget_bytes: int = 0, limits: dict | None = None, threads: int = 1) -> None:
         host, bounds = Host(threads), limits_of(limits)
         options = sized(c.gicodec_client_options, delivery=_DELIVERIES.index(delivery),
-                        token=token.encode(), budget_blocks=budget_blocks, budget_bytes=budget_bytes,
+                        token=coded(token), budget_blocks=budget_blocks, budget_bytes=budget_bytes,
                         host=address(host.struct), limits=address(bounds) if bounds else None)
         super().__init__("client_create", byref(options))
 
@@ -138,8 +140,8 @@ class Server(Handle):
     def __init__(self, *, token: str = "", scene: str = "", preset: str | None = None,
                  threads: int = 1, **limits) -> None:
         host = Host(threads)
-        options = sized(c.gicodec_server_options, token=token.encode(), scene=scene.encode(),
-                        preset=preset.encode() if preset else None, host=address(host.struct),
+        options = sized(c.gicodec_server_options, token=coded(token), scene=coded(scene),
+                        preset=coded(preset) if preset else None, host=address(host.struct),
                         **limits)
         self._volumes: dict[int, dict] = {}
         super().__init__("server_create", byref(options))
@@ -152,7 +154,7 @@ class Server(Handle):
         geometry.grid[:] = next(iter(textures.values())).grid
         geometry.origin[:], geometry.spacing[:] = origin, spacing
         number = ctypes.c_uint32()
-        library.server_add_volume(self._handle, name.encode(), volume._handle, byref(geometry),
+        library.server_add_volume(self._handle, coded(name), volume._handle, byref(geometry),
                                   None, 0, byref(number))
         self._volumes[number.value] = textures
         return number.value
@@ -174,7 +176,7 @@ class Server(Handle):
     def connect(self, now: float, origin: str = "") -> int:
         """A new connection of the transport; returns its number."""
         number = ctypes.c_uint32()
-        library.server_connect(self._handle, now, origin.encode(), byref(number))
+        library.server_connect(self._handle, now, coded(origin), byref(number))
         return number.value
 
     def receive(self, connection: int, message, now: float) -> None:

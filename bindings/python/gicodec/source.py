@@ -6,6 +6,7 @@ import contextlib
 import ctypes
 import os
 import threading
+import weakref
 
 from . import _interface as c
 from ._library import Error, sized
@@ -25,7 +26,9 @@ class FileSource:
     def __init__(self, stream, turn: threading.Lock) -> None:
         self._stream, self._turn, self._position = stream, turn, 0
         self._failure: BaseException | None = None
-        self._calls = _READ(self._read), _SEEK(self._seek), _SIZE(self._size)
+        me = weakref.ref(self)  # so that an open file is not kept alive
+        self._calls = (_READ(lambda _, into, wanted, got: me()._read(into, wanted, got)),
+                       _SEEK(lambda _, offset: me()._seek(offset)), _SIZE(lambda _: me()._size()))
         read, seek, size = (ctypes.cast(call, ctypes.c_void_p) for call in self._calls)
         self.struct = sized(c.gicodec_source, read=read, seek=seek, size=size)
 
@@ -40,7 +43,7 @@ class FileSource:
                 raise failure from error
             raise
 
-    def _read(self, _, into: int, wanted: int, got) -> int:
+    def _read(self, into: int, wanted: int, got) -> int:
         try:
             memory = memoryview((ctypes.c_char * wanted).from_address(into)).cast("B")
             done = 0
@@ -58,11 +61,11 @@ class FileSource:
             self._failure = failure
             return c.IO_FAILED
 
-    def _seek(self, _, offset: int) -> int:
+    def _seek(self, offset: int) -> int:
         self._position = offset
         return c.OK
 
-    def _size(self, _) -> int:
+    def _size(self) -> int:
         try:
             return os.fstat(self._stream.fileno()).st_size
         except BaseException as failure:

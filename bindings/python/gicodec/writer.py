@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import os
-import pathlib
-import secrets
+import threading
 
 import numpy as np
 
 from . import _interface as c
-from ._library import Handle, byref, library, sized
+from ._library import Handle, byref, coded, library, sized
 from .codec import VolumeEncoder, borrowed
 from .description import VolumeDesc
+from .output import OutputFile
 
 
 class Writer:
@@ -20,24 +19,19 @@ class Writer:
         with gicodec.Writer("x.gic", {"room": volume}) as writer:
             writer.add(0, {"color": array, "vis": array})
 
-    The file appears under its name when the ``with`` block ends without an error; one of that name
-    stays unless ``overwrite`` is true. ``None`` as path: ``getvalue()`` has the bytes. Options of
-    VolumeEncoder may follow.
+    The file appears under its name when the ``with`` block ends without an error; until then it is
+    x.gic.….partial beside it. A container of that name stays unless ``overwrite`` is true; anything
+    else stays in any case. ``None`` as path: ``getvalue()`` has the bytes. Options of VolumeEncoder
+    may follow. A failed call changes nothing: repeat it, or go on. Threads take turns.
     """
 
     def __init__(self, path, volumes: dict[str, VolumeDesc], *, overwrite: bool = False,
                  geometry: dict | None = None, metadata: dict[str, str] | None = None,
                  scene: str = "", **options) -> None:
-        self._path = None if path is None else pathlib.Path(path)
-        self._overwrite = overwrite
-        self._stream, self._pieces = None, []
-        if self._path is not None:
-            if self._path.is_dir():
-                raise IsADirectoryError(f"{self._path} is a folder: give the name of a file")
-            if not overwrite and self._path.exists():
-                raise FileExistsError(f"{self._path} exists: pass overwrite=True to replace it")
-            if not self._path.parent.is_dir():
-                raise FileNotFoundError(f"there is no folder {self._path.parent} for {self._path.name}")
+        self._turn = threading.RLock()
+        self._output = None if path is None else OutputFile(path, overwrite)
+        self._pieces: list[bytes] = []
+        self._ended = False
         self._container = _Container(volumes, geometry or {}, metadata or {}, scene,
                                      options.get("max_error", 0))
         self._writer = _BytesWriter(self._container)
@@ -46,9 +40,8 @@ class Writer:
         for name, volume in volumes.items():
             self._encoders[name] = VolumeEncoder(volume, first_texture=first, **options)
             first += len(volume.textures)
-        if self._path is not None:
-            self._work = self._path.with_name(f".{self._path.name}.{secrets.token_hex(4)}")
-            self._stream = self._work.open("xb")
+        if self._output is not None:
+            self._output.begin()
         self._drain()
 
     def add(self, frame: int, textures: dict, volume: str | None = None, blocks="changed") -> None:
@@ -57,33 +50,38 @@ class Writer:
         if name not in self._encoders:
             raise KeyError(f"there is no volume {name!r}: there are {', '.join(self._encoders)}")
         _check_frame(frame)
-        for packet in self._encoders[name].encode(textures, blocks):
-            self.add_packet(frame, packet)
+        encoder = self._encoders[name]
+        with self._turn:
+            try:
+                for packet in encoder.encode(textures, blocks):
+                    self.add_packet(frame, packet)
+            except BaseException:
+                if not encoder.is_closed:
+                    encoder.request_keyframe()  # the file may lack what the encoder went on from
+                raise
 
     def add_packet(self, frame: int, packet: bytes) -> None:
         """Adds a packet as it is; its texture number names its texture."""
         _check_frame(frame)
         data = np.frombuffer(packet, np.uint8)
-        library.writer_add(self._writer._handle, frame, data.ctypes.data, data.nbytes)
-        self._drain()
+        with self._turn:
+            self._drain()  # what an earlier call could not write
+            library.writer_add(self._writer._handle, frame, data.ctypes.data, data.nbytes)
+            self._drain()
 
     def close(self) -> None:
-        """Ends the container, and gives the file its name."""
-        if self._writer.is_closed:
-            return
-        library.writer_finish(self._writer._handle)
-        self._drain()
-        self._end()
-        if self._stream is None:
-            return
-        self._stream.close()
-        if self._overwrite:
-            os.replace(self._work, self._path)
-            return
-        try:
-            os.link(self._work, self._path)  # unlike rename(), fails if somebody took the name
-        finally:
-            self._work.unlink()
+        """Ends the container, and gives the file its name. After an error, e.g. of a full disk, the
+        call may be repeated."""
+        with self._turn:
+            if self._writer.is_closed:
+                return
+            if not self._ended:
+                library.writer_finish(self._writer._handle)
+                self._ended = True
+            self._drain()
+            if self._output is not None:
+                self._output.publish()
+            self._end()
 
     def getvalue(self) -> bytes:
         """The bytes of a Writer without a path."""
@@ -91,8 +89,8 @@ class Writer:
 
     def _drain(self) -> None:
         piece = borrowed("writer_bytes", self._writer._handle, dtype=np.uint8).tobytes()
-        if self._stream is not None:
-            self._stream.write(piece)
+        if self._output is not None:
+            self._output.write(piece)
         else:
             self._pieces.append(piece)
         library.writer_take(self._writer._handle)
@@ -113,12 +111,11 @@ class Writer:
 
     def _abandon(self) -> None:
         """Removes what has no name yet."""
-        if self._stream is not None and not self._stream.closed:
-            self._stream.close()
-            self._work.unlink()
+        if self._output is not None:
+            self._output.abandon()
 
     def __del__(self) -> None:
-        if hasattr(self, "_stream"):
+        if hasattr(self, "_output"):
             self._abandon()
 
 
@@ -136,7 +133,7 @@ class _Container(Handle):
         super().__init__("container_create")
         texture = 0
         for place, (name, volume) in enumerate(volumes.items()):
-            library.container_add_volume(self._handle, name.encode(), volume._handle)
+            library.container_add_volume(self._handle, coded(name), volume._handle)
             if name in geometry:
                 struct = sized(c.gicodec_geometry)
                 for field, value in geometry[name].items():
@@ -147,9 +144,9 @@ class _Container(Handle):
                 library.container_set_largest_error(self._handle, texture, bound)
                 texture += 1
         for name, value in metadata.items():
-            library.container_add_metadata(self._handle, c.METADATA_CONTAINER, 0, name.encode(),
-                                           value.encode())
-        library.container_set_scene(self._handle, scene.encode(), 0)
+            library.container_add_metadata(self._handle, c.METADATA_CONTAINER, 0, coded(name),
+                                           coded(value))
+        library.container_set_scene(self._handle, coded(scene), 0)
 
 
 class _BytesWriter(Handle):

@@ -7,6 +7,7 @@
 from __future__ import annotations
 
 import asyncio
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -40,13 +41,15 @@ class GicodecCodec(ArrayBytesCodec):
 
     async def _encode_single(self, chunk_array, chunk_spec):
         array = np.ascontiguousarray(chunk_array.as_numpy_array())
+        array = array.astype(array.dtype.newbyteorder("="), copy=False)
         coded = await asyncio.to_thread(arrays.encode, array, self.level, max_error=self.max_error)
         return chunk_spec.prototype.buffer.from_bytes(coded)
 
     async def _decode_single(self, chunk_bytes, chunk_spec):
-        array = await asyncio.to_thread(arrays.decode, chunk_bytes.to_bytes())
-        if array.size != int(np.prod(chunk_spec.shape)):
-            raise ValueError(f"the chunk holds an array of shape {array.shape}, not {chunk_spec.shape}")
+        type_of = getattr(chunk_spec.dtype, "to_native_dtype", lambda: np.dtype(chunk_spec.dtype))
+        type = type_of().newbyteorder("=")
+        expected = math.prod(chunk_spec.shape) * type.itemsize, type
+        array = await asyncio.to_thread(arrays.decode, chunk_bytes.to_bytes(), expected=expected)
         return chunk_spec.prototype.nd_buffer.from_ndarray_like(array.reshape(chunk_spec.shape))
 
     def compute_encoded_size(self, input_byte_length: int, chunk_spec) -> int:

@@ -46,3 +46,26 @@ def test_numcodecs():
     codec.decode(coded, out=out)
     assert np.array_equal(out, field)
     assert numcodecs.registry.get_codec(codec.get_config()) == codec
+
+
+@pytest.mark.parametrize("order", ["C", "F"])
+@pytest.mark.parametrize("dtype", [">f4", "<f4", ">i2", "<f8", "|u1"])
+def test_zarr_2_in_any_order_of_bytes_and_axes(tmp_path, dtype, order):
+    field = (FIELD * 100 + 200).astype(dtype)
+    array = zarr.create_array(tmp_path / "x.zarr", shape=field.shape, chunks=(16, 30, 16), dtype=dtype,
+                              order=order, zarr_format=2, compressors=gicodec.numcodecs.Gicodec())
+    array[:] = field
+    assert np.array_equal(zarr.open_array(tmp_path / "x.zarr", mode="r")[:], field)
+
+
+def test_zarr_refuses_chunks_of_another_size_or_type(tmp_path):
+    for other in (np.zeros(1 << 20, np.float16), np.full((4,), 70000, np.float32)):
+        array = zarr.create_array(tmp_path / f"{other.size}.zarr", shape=(4,), chunks=(4,), dtype="float16",
+                                  serializer=gicodec.zarr.GicodecCodec(), compressors=None)
+        array[:] = np.ones(4)
+        chunk, = (path for path in (tmp_path / f"{other.size}.zarr").rglob("*") if path.parent.name == "c")
+        chunk.write_bytes(gicodec.encode(other))
+        with pytest.raises(ValueError, match="not 8 bytes"):
+            array[:]
+    with pytest.raises(ValueError, match="not 8 bytes"):
+        gicodec.numcodecs.Gicodec().decode(gicodec.encode(np.zeros(1 << 20)), out=np.zeros(4, np.float16))

@@ -180,6 +180,8 @@ GICODEC_C_API gicodec_status gicodec_player_set_growing(gicodec_player* player, 
 /// Not 0 once the player found the container's end mark, which gicodec_player_open() does if the
 /// source can seek. A container without one was cut off, or is growing.
 GICODEC_C_API uint32_t gicodec_player_finished(const gicodec_player* player);
+/// Peak bytes that it holds, as max_total_bytes counts them.
+GICODEC_C_API uint64_t gicodec_player_memory(const gicodec_player* player);
 /// The next gicodec_player_next() applies that frame. GICODEC_UNKNOWN_FRAME.
 GICODEC_C_API gicodec_status gicodec_player_seek(gicodec_player* player, uint64_t frame);
 /// The frame of the last gicodec_player_next().
