@@ -85,5 +85,31 @@ TEST(Expansion, ContainersAddLittle) {
   EXPECT_LE(writer.bytes_written() - before, 26 * kPackets + 35 + 49);
 }
 
+/// However far the last part of the index is from the end of a file that was cut off.
+TEST(Expansion, LargeContainersThatWereCutOffCanBeSought) {
+  const TextureDesc desc = probe_texture(Format::R32_SFLOAT, {16, 16, 8}, 16, 0);
+  Texture texture(desc);
+  auto encoder = *Encoder::create(desc, {.backend = "raw", .gop = 1});
+  Random random(84);
+  texture.fill(Fill::noise, random);
+  MemorySink sink;
+  auto writer = *ContainerWriter::create(sink, one_texture(desc));
+  const auto packet = *encoder.encode(std::as_const(texture).view(), Selection::all());
+  std::uint64_t frames = 0;
+  while (sink.bytes.size() < (std::size_t{18} << 20)) {
+    ASSERT_EQ(writer.add(frames++, packet), Status::ok);
+  }
+  MemorySource source(std::span(sink.bytes).first(sink.bytes.size() - 1));
+  auto reader = *ContainerReader::open(source);
+  EXPECT_FALSE(reader.finished());
+  const auto found = reader.frames();
+  ASSERT_TRUE(found.ok());
+  EXPECT_EQ(found->size(), frames - 1);
+  ASSERT_EQ(reader.seek(frames - 2), Status::ok);
+  ContainerPacket last;
+  ASSERT_EQ(reader.next(last), Status::ok);
+  EXPECT_EQ(last.frame, frames - 2);
+}
+
 }  // namespace
 }  // namespace gicodec

@@ -209,7 +209,7 @@ TEST(ContainerDescriptions, WhatIsWrongWithAVolume) {
   EXPECT_EQ(found([](auto& v, auto&) { v.groups.emplace_back(); }), "groups: one has no textures");
   EXPECT_EQ(found([](auto&, auto& g) { ++g.textures[1].desc.grid.x; }),
             "grid: the textures of a group have one space and one grid");
-  EXPECT_EQ(found([](auto&, auto& g) { g.textures[1].desc.record = {}; }).substr(0, 7), "record:");
+  EXPECT_EQ(found([](auto&, auto& g) { g.textures[1].desc.record = {}; }).substr(0, 7), "format:");
   EXPECT_EQ(found([](auto&, auto& g) { g.textures[1].desc.guard_band = 9; }),
             "guard_band: it is 0 or 1");
   EXPECT_EQ(found([](auto&, auto& g) { g.depends_on = 0; }).substr(0, 11), "depends_on:");

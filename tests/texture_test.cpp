@@ -238,7 +238,7 @@ TEST(Desc, ProblemsNameTheField) {
   const TextureDesc probes = probe_texture(Format::R16G16_SFLOAT, {3, 2, 5}, 8);
   const TextureDesc pool = pool_texture(Format::R16G16_SFLOAT, 9, {2, 2, 2});
   EXPECT_EQ(problem(probes), "");
-  EXPECT_EQ(problem(TextureDesc{}).substr(0, 7), "record:");
+  EXPECT_EQ(problem(TextureDesc{}).substr(0, 7), "format:");
   EXPECT_EQ(field(probes, [](auto& d) { d.block.x = 65; }), "block");
   EXPECT_EQ(field(probes, [](auto& d) { d.guard_band = 2; }), "guard_band");
   EXPECT_EQ(field(probes, [](auto& d) { d.block.y = 7; }), "guard_band");

@@ -107,7 +107,7 @@ struct Kind {
 
 /// ok if the volume has a kind, all textures are valid, those of a group have one space and grid,
 /// names are valid and unique, and `bundled`, `presence` and `depends_on` are consistent. Else
-/// invalid_description or unsupported_format.
+/// invalid_description, unsupported_format or limit_exceeded.
 Status validate(const VolumeDesc& volume) noexcept;
 /// Why not, as that of a texture. A volume without one may still be none of its kind's.
 [[nodiscard]] std::string_view problem(const VolumeDesc& volume) noexcept;

@@ -84,15 +84,13 @@ struct ServerOptions {
   /// zeros: by the size of a volume's blocks, e.g. 4×4×4 for probes of 8×8 and 16×16 texels.
   Grid region{0, 0, 0};
   SceneId scene = {};  ///< sent to clients
-  /// Sent to clients. Numbers and times of updates are comparable within one epoch only. 0: drawn
-  /// at random.
+  /// Sent to clients. Numbers and times of updates are comparable within an epoch. 0: random.
   std::uint64_t epoch = 0;
   /// Intended seconds between updates, by which congestion control measures delays. 0: the recent
   /// time between updates; late updates then permit longer delays.
   double interval = 0;
-  /// Bytes of the first update to a client, 2,048 or more. The size doubles whenever a client
-  /// acknowledges all without delay, so that a volume arrives in several updates. Choose more
-  /// where links are known to be fast.
+  /// Bytes of the first update to a client, 2,048 or more; doubled whenever a client acknowledges
+  /// all without delay. Choose more where links are known to be fast.
   std::uint64_t first_update_bytes = 12 << 10;
   /// Send a hash of each stream's state, for clients to check. Messages are then not shared among
   /// clients.
@@ -224,6 +222,8 @@ class Server {
   void tick(double now);
   /// Moves out the messages for a client, oldest first. Send them reliably and in this order.
   [[nodiscard]] std::vector<OutgoingMessage> take_messages(ConnectionId connection);
+  /// Moves out what happened, oldest first. Take them after each call: beyond some 65,000 the
+  /// oldest are dropped.
   [[nodiscard]] std::vector<ServerEvent> take_events();
   /// The last update's packets for a connection, in the order in which the client applies them.
   [[nodiscard]] std::span<const OutgoingPacket> packets(ConnectionId connection) const noexcept;

@@ -150,7 +150,8 @@ struct BlockOrigin {
 };
 
 /// unsupported_format if the record is not valid; invalid_description if another field is out of
-/// range or two fields contradict each other.
+/// range or two fields contradict each other; limit_exceeded in a 32-bit program for textures of
+/// 256 MiB and more.
 Status validate(const TextureDesc& desc) noexcept;
 /// Why not, a field first: "guard_band: it is 0 or 1". Empty where validate() is ok. A zero follows
 /// the text; static storage.

@@ -32,7 +32,8 @@ Status ContainerIndex::load(EntryReader& reader, std::uint64_t first_entry) {
   return read_parts(reader, last, finished_ ? entry.offset : total);
 }
 
-/// Sets `last` to the last part's offset; leaves it if there is none.
+/// Sets `last` to the last part's offset; leaves it if there is none, or none is found soon: the
+/// packets are then listed front to back once somebody seeks.
 Status ContainerIndex::find_last_part(EntryReader& reader, std::uint64_t total,
                                       std::uint64_t& last) {
   constexpr std::uint64_t kTail = kIndexTail + kEntryChecksum;
@@ -49,7 +50,7 @@ Status ContainerIndex::find_last_part(EntryReader& reader, std::uint64_t total,
       std::memcpy(&offset, &window[at], sizeof offset);
       const std::uint64_t tail_at = begin + at;
       if (offset < first_entry_ || offset >= tail_at) continue;
-      if (++tries > kTries) return Status::limit_exceeded;
+      if (++tries > kTries) return Status::ok;
       FileEntry part;
       const Status status = reader.read_head(offset, part);
       if (status == Status::ok && part.is(EntryType::index) && part.end() == tail_at + kTail) {
@@ -60,7 +61,7 @@ Status ContainerIndex::find_last_part(EntryReader& reader, std::uint64_t total,
     if (begin == floor) break;
     end = begin + kTail - 1;  // A tail may begin in the next window.
   }
-  return floor == first_entry_ ? Status::ok : Status::limit_exceeded;
+  return Status::ok;
 }
 
 /// Walks from the last part to the first to count them, then reads them in order.

@@ -8,6 +8,7 @@ Status status_of_caller(gicodec_status status) noexcept {
   const bool known = status > 0 && status < UINT16_MAX &&
                      to_string(static_cast<Status>(status)) != to_string(Status(UINT16_MAX));
   if (status == GICODEC_OK) return Status::ok;
+  if (status == GICODEC_END) return Status::io_failed;
   return known ? static_cast<Status>(status) : Status::io_failed;
 }
 

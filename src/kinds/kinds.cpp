@@ -144,7 +144,8 @@ Status validate(const VolumeDesc& volume) noexcept {
   if (problem(volume).empty()) return Status::ok;
   for (const TextureGroup& group : volume.groups) {
     for (const NamedTexture& texture : group.textures) {
-      if (!is_valid(texture.desc.record)) return Status::unsupported_format;
+      const Status status = validate(texture.desc);
+      if (status == Status::unsupported_format || status == Status::limit_exceeded) return status;
     }
   }
   return Status::invalid_description;

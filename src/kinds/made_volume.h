@@ -24,9 +24,16 @@ Status write_made(const VolumeDesc& volume, const Result<VolumeDesc>& made,
   });
 }
 
+/// corrupt in place of a status that says that what was read makes no volume.
+constexpr Status status_of_read(Status status) {
+  const bool keeps =
+      status == Status::ok || status == Status::out_of_memory || status == Status::limit_exceeded;
+  return keeps ? status : Status::corrupt;
+}
+
 /// The volume that is made from numbers as read; corrupt if they make none.
 inline Result<VolumeDesc> read_made(Result<VolumeDesc> made) {
-  if (!made && made.status() != Status::out_of_memory) return Status::corrupt;
+  if (!made) return status_of_read(made.status());
   return made;
 }
 

@@ -3,6 +3,7 @@
 
 #include "base/guard.h"
 #include "bitstream/description.h"
+#include "kinds/made_volume.h"
 
 #include <string>
 #include <utility>
@@ -53,8 +54,7 @@ Result<VolumeDesc> parse(std::span<const std::byte> description) {
   }
   if (!reader.rest().empty()) return Status::corrupt;
   auto volume = probe_volume(textures);
-  if (!volume && volume.status() != Status::out_of_memory) return Status::corrupt;
-  return volume;
+  return read_made(std::move(volume));
 }
 
 Status write(const VolumeDesc& volume, std::vector<std::byte>& out) {

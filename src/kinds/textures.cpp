@@ -3,6 +3,7 @@
 
 #include "base/guard.h"
 #include "bitstream/description.h"
+#include "kinds/made_volume.h"
 
 #include <algorithm>
 #include <utility>
@@ -65,7 +66,8 @@ Result<VolumeDesc> parse(std::span<const std::byte> description) {
   if (!reader.ok()) {
     return reader.status() == Status::truncated ? Status::corrupt : reader.status();
   }
-  if (!reader.rest().empty() || validate(volume) != Status::ok) return Status::corrupt;
+  if (!reader.rest().empty()) return Status::corrupt;
+  if (const Status status = validate(volume); status != Status::ok) return status_of_read(status);
   return volume;
 }
 

@@ -37,6 +37,7 @@ Result<std::unique_ptr<TextureEncoder>> TextureEncoder::create(const TextureDesc
 }
 
 Status TextureEncoder::select_list(std::span<const std::uint32_t> list) {
+  if (list.size() > stream_.size()) return Status::block_repeated;
   blocks_.assign(list.begin(), list.end());
   if (!std::is_sorted(blocks_.begin(), blocks_.end())) std::sort(blocks_.begin(), blocks_.end());
   if (!blocks_.empty() && blocks_.back() >= stream_.size()) return Status::block_out_of_range;

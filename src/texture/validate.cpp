@@ -129,9 +129,11 @@ std::string_view problem_of_model(const TextureDesc& desc) {
   return "model: unknown";
 }
 
-}  // namespace
+/// Sums of a few such sizes must not overflow.
+bool fits_machine(const TextureDesc& desc) { return texture_bytes(desc) <= SIZE_MAX / 16; }
 
-std::string_view problem(const TextureDesc& desc) noexcept {
+/// On any machine.
+std::string_view problem_anywhere(const TextureDesc& desc) {
   if (!is_valid(desc.record)) {
     return "format: unknown; where it is 0, components that overlap or are none";
   }
@@ -139,14 +141,20 @@ std::string_view problem(const TextureDesc& desc) noexcept {
        {problem_of_block, problem_of_layout, problem_of_space, problem_of_model}) {
     if (const std::string_view found = part(desc); !found.empty()) return found;
   }
-  // Sums of a few such sizes must not overflow.
-  return texture_bytes(desc) > SIZE_MAX / 16 ? "grid: the texture exceeds the machine's memory"
-                                             : "";
+  return {};
+}
+
+}  // namespace
+
+std::string_view problem(const TextureDesc& desc) noexcept {
+  if (const std::string_view found = problem_anywhere(desc); !found.empty()) return found;
+  return fits_machine(desc) ? "" : "grid: a 32-bit program takes textures below 256 MiB";
 }
 
 Status validate(const TextureDesc& desc) noexcept {
-  if (problem(desc).empty()) return Status::ok;
-  return is_valid(desc.record) ? Status::invalid_description : Status::unsupported_format;
+  if (!is_valid(desc.record)) return Status::unsupported_format;
+  if (!problem_anywhere(desc).empty()) return Status::invalid_description;
+  return fits_machine(desc) ? Status::ok : Status::limit_exceeded;
 }
 
 }  // namespace gicodec

@@ -139,7 +139,7 @@ export class Client {
       instance.check('client_get_state', [this.#handle, out]);
       const {connected, resumed, consistent, reason, ...rest} = instance.read(clientState, out);
       return {...rest, connected: connected !== 0, resumed: resumed !== 0, consistent: consistent !== 0,
-              reason: instance.text(instance.call('reason_text', reason))};
+              reason: instance.text(instance.call('reason_text', reason)), reasonNumber: reason};
     });
   }
 

@@ -15,8 +15,8 @@ export const useModule = (source) => module.use(source);
 export const Client = {create: (options) => client.Client.create(module, options)};
 
 /** Follows a server over WebSockets. */
-export async function connect(url, {onUpdate, onLost, everything, signal, WebSocket, ...options} = {}) {
+export async function connect(url, {onUpdate, onLost, everything, timeout, signal, WebSocket, ...options} = {}) {
   signal?.throwIfAborted();
   const made = await client.Client.create(module, options);
-  return new Connection(made, url, {onUpdate, onLost, everything, signal, WebSocket});
+  return new Connection(made, url, {onUpdate, onLost, everything, timeout, signal, WebSocket});
 }

@@ -1,5 +1,8 @@
 // A client over a WebSocket, which comes back after a lost connection.
 
+const SHUTDOWN = 11;  // the reason of a server that ends: another one may begin
+const SILENCE = 20000;  // milliseconds after which a connection counts as lost
+
 /** Follows a server: calls onUpdate(client) after each message that changed what the client holds. */
 export class Connection {
   #url;
@@ -8,7 +11,10 @@ export class Connection {
   #ended = false;
   #wait = 0;
   #timer = 0;
+  #silence = 0;  // a timer
+  #why = '';
   #end;
+  #abort;
 
   constructor(client, url, options) {
     this.client = client;
@@ -17,7 +23,8 @@ export class Connection {
     /** Resolves with the reason once the session has ended; rejects if it cannot go on. */
     this.closed = new Promise((resolve, reject) => (this.#end = {resolve, reject}));
     this.closed.catch(() => {});  // unless somebody waits for it, it may fail unheard
-    options.signal?.addEventListener('abort', () => this.#fail(options.signal.reason), {once: true});
+    this.#abort = () => this.#fail(options.signal.reason);
+    options.signal?.addEventListener('abort', this.#abort, {once: true});
     if (options.signal?.aborted) this.#fail(options.signal.reason);
     else this.#connect();
   }
@@ -30,11 +37,22 @@ export class Connection {
     }
     const socket = new Socket(this.#url, 'gicodec');
     this.#socket = socket;
+    this.#why = '';
     socket.binaryType = 'arraybuffer';
-    socket.onopen = () => this.#guard(() => socket.send(this.client.hello()));
-    socket.onmessage = ({data}) => this.#guard(() => this.#take(data));
-    socket.onclose = () => socket === this.#socket && this.#again();
-    socket.onerror = () => {};  // close follows
+    const is = () => socket === this.#socket && !this.#ended;
+    socket.onopen = () => is() && this.#guard(() => socket.send(this.client.hello()));
+    socket.onmessage = ({data}) => is() && this.#guard(() => this.#take(data));
+    socket.onclose = ({code, reason}) => is() && this.#again(this.#why || reason || `the connection closed (${code})`);
+    socket.onerror = (event) => (this.#why = event?.message ?? '');  // close follows
+    this.#listen();
+  }
+
+  /** Counts a connection as lost that brings nothing for long: no end notices a network that is gone. */
+  #listen() {
+    const silence = this.#options.timeout ?? SILENCE;
+    clearTimeout(this.#silence);
+    if (silence === 0) return;
+    this.#silence = setTimeout(() => this.#again(`nothing came for ${silence / 1000} s`), silence);
   }
 
   #guard(body) {
@@ -47,12 +65,16 @@ export class Connection {
 
   #take(message) {
     const {client} = this;
+    this.#listen();
     const before = client.state.serial;
     const goesOn = client.receive(message);
     this.#wait = 0;
     if (goesOn && this.#options.everything !== false) this.#chooseAll();
     this.send();
-    if (!goesOn) return this.#finish(client.state.reason);
+    if (!goesOn) {
+      const {reason, reasonNumber} = client.state;
+      return reasonNumber === SHUTDOWN ? this.#again(reason) : this.#finish(reason);
+    }
     const {serial, consistent} = client.state;
     if (serial !== before && consistent) this.#options.onUpdate?.(client);
   }
@@ -78,10 +100,15 @@ export class Connection {
     for (const message of this.client.messages()) this.#socket.send(message);
   }
 
-  #again() {
+  #again(why) {
     if (this.#ended) return;
+    const socket = this.#socket;
+    this.#socket = null;
+    socket?.close();
+    clearTimeout(this.#silence);
     this.#wait = Math.min(Math.max(this.#wait * 2, 250), 8000);
-    this.#options.onLost?.(this.#wait);
+    this.#options.onLost?.(this.#wait, why);
+    if (this.#ended) return;  // it called close()
     this.#timer = setTimeout(() => this.#guard(() => this.#connect()), this.#wait);
   }
 
@@ -108,6 +135,8 @@ export class Connection {
   #stop() {
     this.#ended = true;
     clearTimeout(this.#timer);
+    clearTimeout(this.#silence);
+    this.#options.signal?.removeEventListener('abort', this.#abort);
     this.#socket?.close();
   }
 }

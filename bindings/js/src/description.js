@@ -1,5 +1,5 @@
 // Descriptions of textures and volumes: plain objects, as in the library's JSON, and structs.
-import {GicodecError} from './error.js';
+import {GicodecError, quoted} from './error.js';
 import {bytesOf} from './instance.js';
 import {INVALID_NAME, UNSUPPORTED_FORMAT, textureDesc, textureInfo} from './interface.js';
 
@@ -139,8 +139,8 @@ function kindNumber(instance, kind) {
 export function placeOf(textures, texture) {
   const place = typeof texture === 'number' ? texture : textures.findIndex((one) => one.name === texture);
   if (!textures[place]) {
-    throw new RangeError(`there is no texture ${JSON.stringify(texture)}: there are ` +
-                         textures.map((one) => one.name).join(', '));
+    throw new RangeError(`there is no texture ${typeof texture === 'string' ? quoted(texture) : texture}: there are ` +
+                         textures.map((one) => quoted(one.name)).join(', '));
   }
   return place;
 }
@@ -161,7 +161,7 @@ export function texelsOf(memory, desc, array) {
 
 /** Arrays are the bits of texels: of any integers, but not of floats where texels are something else. */
 function checkFit({name, textureBytes, ArrayType, format}, array) {
-  const it = name ? `"${name}"` : 'the texture';
+  const it = name ? quoted(name) : 'the texture';
   const type = array.constructor;
   if (type.name.startsWith('Float') && type !== ArrayType) {
     throw new TypeError(`${it} takes the bits of ${format ?? 'its records'} in a ${ArrayType.name}, not a ${type.name}`);

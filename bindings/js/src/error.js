@@ -5,6 +5,12 @@ export function checkResponse({ok, status, statusText, url}) {
   if (!ok) throw new TypeError(`the server answers ${status} ${statusText} for ${url || 'the request'}`);
 }
 
+/** A name from a file or a server in quotes, safe for a terminal. */
+export function quoted(name) {
+  return JSON.stringify(name).replace(/[\u007f-\u009f\u200e\u200f\u2028-\u202e\u2066-\u2069]/g,
+      (one) => `\\u${one.charCodeAt(0).toString(16).padStart(4, '0')}`);
+}
+
 /** Throws for an option that does not exist. */
 export function checkOptions(options, names) {
   for (const name of Object.keys(options)) {

@@ -1,6 +1,6 @@
 // An instance of a WebAssembly module of the library, with memory of its own, and what lies in it.
 // Views of its memory are made anew after each call, which may move it.
-import {GicodecError} from './error.js';
+import {GicodecError, quoted} from './error.js';
 import {BACKEND_MISSING, LIMIT_EXCEEDED, OK, OUT_OF_MEMORY, STATUS_NAMES, view} from './interface.js';
 
 /** Limits that large scenes meet first. */
@@ -28,7 +28,7 @@ export class Instance {
    * call fails, too.
    */
   call(name, ...values) {
-    return this.#run(`gicodec_${name}`, values);
+    return this.#run(`gicodec_${name}`, values.map((value) => (typeof value === 'object' ? Number(value) : value)));
   }
 
   #run(name, values) {
@@ -88,7 +88,7 @@ export class Instance {
       return '; the package has native and raw: gicodec decode and gicodec encode make a file of these';
     }
     const limited = status === LIMIT_EXCEEDED && !this.#exports.gicodec_encoder_create;  // encoders have no limits
-    return limited ? `; the option limits allows more: {${MEMORY.join(', ')}}` : '';
+    return limited ? `; the option limits allows more: {${MEMORY.join(', ')}}, below 256 MiB a texture` : '';
   }
 
   /** A view that is valid until the next call. */
@@ -131,7 +131,7 @@ export class Instance {
         this.bytes(at, bytes.length).set(bytes);
         return at;
       },
-      text: (string) => memory.put(encoder.encode(`${string}\0`)),
+      text: (string) => memory.put(encoder.encode(`${checkText(`${string}`)}\0`)),
       struct: (struct, values = {}) => {
         const at = room(struct.size);
         this.write(struct, at, values);
@@ -171,7 +171,7 @@ export class Instance {
     const data = new DataView(this.#exports.memory.buffer);
     for (const [name, value] of Object.entries(all)) {
       if (value === undefined || value === null) continue;
-      const field = struct.fields[name];
+      const field = Object.hasOwn(struct.fields, name) && struct.fields[name];
       if (!field) {
         throw new TypeError(`there is no ${name}: there are ${Object.keys(struct.fields).join(', ')}`);
       }
@@ -247,6 +247,14 @@ export class Instance {
   word(at) {
     return new DataView(this.#exports.memory.buffer).getUint32(at, true);
   }
+}
+
+/** Throws for what UTF-8 or the library's texts, which end at a zero, cannot hold. */
+function checkText(string) {
+  if (/\0|[\uD800-\uDBFF](?![\uDC00-\uDFFF])|(?<![\uD800-\uDBFF])[\uDC00-\uDFFF]/.test(string)) {
+    throw new TypeError(`${quoted(string)} holds a zero or half a character`);
+  }
+  return string;
 }
 
 /** A frame's number as the library takes it. */

@@ -1,6 +1,6 @@
 // A player on the thread that it is called on: the page's, or a worker's.
 import {complete, placeOf, readTexture} from './description.js';
-import {GicodecError} from './error.js';
+import {GicodecError, quoted} from './error.js';
 import {bytesOf, frameNumber} from './instance.js';
 import {
   END, OK, OUT_OF_MEMORY, TRUNCATED, UNKNOWN_KIND, UNSUPPORTED_VERSION,
@@ -128,10 +128,10 @@ export class LocalPlayer {
     const place = placeOf(this.textures, texture);
     const desc = this.textures[place];
     if (desc.grid === undefined) {
-      throw new GicodecError(UNKNOWN_KIND, `"${desc.name}" is of a kind that this version does not know`);
+      throw new GicodecError(UNKNOWN_KIND, `${quoted(desc.name)} is of a kind that this version does not know`);
     }
     if (this.#selected && !this.#selected.has(place)) {
-      throw new RangeError(`"${desc.name}" is not among the textures that open() was told to play`);
+      throw new RangeError(`${quoted(desc.name)} is not among the textures that open() was told to play`);
     }
     if (!this.#played) throw new RangeError('nothing is played yet: call next() before');
     return {desc, place};

@@ -27,10 +27,9 @@ export class Player {
     checkOptions(options, ['limits', 'textures', 'signal']);
     const {limits, textures, signal} = options;
     signal?.throwIfAborted();
-    const given = await source;
     const player = new Player(await place(module), signal);
     try {
-      await player.#begin(given);
+      await player.#begin(await player.#abortable(Promise.resolve(source)));
       for (;;) {
         const container = await player.#call('open', [{limits, textures}]);
         if (container) return Object.assign(player, container);
@@ -71,16 +70,37 @@ export class Player {
     }
   }
 
-  /** Passes on what arrives next, or that nothing does. */
+  /** Passes on what arrives next, small pieces that are there together, or that nothing does. */
   async #more() {
-    const {done, value} = await this.#abortable(this.#reader.next());
-    if (done) {
-      this.#reader = null;
-      return this.#call('finish', []);
+    let {done, value} = await this.#abortable(this.#ahead());
+    const pieces = [];
+    for (let size = 0; !done;) {
+      pieces.push(bytesOf(value));
+      size += pieces.at(-1).byteLength;
+      const next = size < TOGETHER && await this.#abortable(Promise.race([this.#ahead(true), soon()]));
+      if (!next) break;
+      this.#next = null;
+      ({done, value} = next);
     }
-    const bytes = bytesOf(value);
-    const whole = this.#owned && bytes.byteLength === bytes.buffer.byteLength;
-    return this.#call('append', [bytes], whole ? [bytes.buffer] : []);
+    if (pieces.length > 0) {
+      const bytes = joined(pieces);
+      const whole = (this.#owned || pieces.length > 1) && bytes.byteLength === bytes.buffer.byteLength;
+      await this.#call('append', [bytes], whole ? [bytes.buffer] : []);
+    }
+    if (!done) return;
+    this.#reader = null;
+    await this.#call('finish', []);
+  }
+
+  #next = null;  // what was asked of the reader and has not come
+
+  /** The reader's next piece; `keep`: the next call may wait for it again. */
+  #ahead(keep = false) {
+    if (!this.#reader) throw new TypeError('the player is closed');
+    const next = this.#next ?? this.#reader.next();
+    this.#next = keep ? next : null;
+    if (keep) next.catch?.(() => {});
+    return next;
   }
 
   #abortable(promise) {
@@ -145,7 +165,8 @@ export class Player {
       if (ArrayBuffer.isView(into) && into.buffer.byteLength === 0) {
         throw new TypeError('into was handed to a worker: go on with the array that read() resolved to');
       }
-      return this.#call('read', values, ArrayBuffer.isView(into) ? [into.buffer] : []);
+      const transfers = ArrayBuffer.isView(into) && into.buffer instanceof ArrayBuffer;
+      return this.#call('read', values, transfers ? [into.buffer] : []);
     });
   }
 
@@ -161,6 +182,21 @@ export class Player {
     this.#host?.close();
     this.#host = null;
   }
+}
+
+/** Bytes from which on pieces are passed on alone. */
+const TOGETHER = 4096;
+const soon = () => new Promise((resolve) => setTimeout(resolve, 0));
+
+function joined(pieces) {
+  if (pieces.length === 1) return pieces[0];
+  const all = new Uint8Array(pieces.reduce((size, piece) => size + piece.byteLength, 0));
+  let at = 0;
+  for (const piece of pieces) {
+    all.set(piece, at);
+    at += piece.byteLength;
+  }
+  return all;
 }
 
 export {useWorkers};

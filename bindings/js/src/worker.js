@@ -20,7 +20,7 @@ export async function answer({request, player, method, values}, post) {
     } else {
       result = players.get(player)[method](...values);
     }
-    post({request, result: portable(result)}, ArrayBuffer.isView(result) ? [result.buffer] : []);
+    post({request, result: portable(result)}, ArrayBuffer.isView(result) && result.buffer instanceof ArrayBuffer ? [result.buffer] : []);
   } catch (error) {
     const {message, status} = error;
     post({request, error: {message, status: error instanceof GicodecError ? status : undefined,

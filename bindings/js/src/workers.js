@@ -133,11 +133,14 @@ class There {
   }
 }
 
+const MOST_WORKERS = 64;
 let workers = [];
 
 /** Starts that many workers for the players that are opened from now on; 0: the caller's thread. */
 export async function useWorkers(module, count) {
-  if (!Number.isInteger(count) || count < 0) throw new RangeError('useWorkers() takes a number from 0 on');
+  if (!Number.isInteger(count) || count < 0 || count > MOST_WORKERS) {
+    throw new RangeError(`useWorkers() takes a number from 0 to ${MOST_WORKERS}; some fewer than processors do best`);
+  }
   const before = workers;
   workers = [];
   before.forEach((worker) => worker.end());

@@ -7,6 +7,12 @@ import {
   METADATA_CONTAINER, METADATA_TEXTURE, METADATA_VOLUME, OUT_OF_ORDER, geometry as geometryStruct,
 } from './interface.js';
 
+/** The arrays of a volume, rather than an array or nothing. */
+function isTextures(value) {
+  return typeof value === 'object' && value !== null && !ArrayBuffer.isView(value) &&
+         !/ArrayBuffer\]$/.test(Object.prototype.toString.call(value));
+}
+
 /** Writes a container of several volumes. */
 export class Writer {
   #instance;
@@ -63,12 +69,17 @@ export class Writer {
     this.#go();
     frameNumber(frame);  // before an encoder goes on
     const [first, ...others] = this.#encoders.keys();
-    const bare = others.length === 0 && volumes[first]?.constructor !== Object;
+    const bare = others.length === 0 && !isTextures(volumes[first]);
     const all = bare ? {[first]: volumes} : volumes;
     for (const [name, textures] of Object.entries(all)) {
       const encoder = this.#encoders.get(name);
       if (!encoder) throw new RangeError(`there is no volume "${name}": ${[...this.#encoders.keys()].join(', ')} are`);
-      encoder.encode(textures, blocks).forEach((packet) => this.addPacket(frame, packet));
+      try {
+        encoder.encode(textures, blocks).forEach((packet) => this.addPacket(frame, packet));
+      } catch (error) {
+        encoder.requestKeyframe();  // the file may lack what the encoder went on from
+        throw error;
+      }
     }
   }
 

@@ -7,7 +7,7 @@ import {join} from 'node:path';
 import {after, before, test} from 'node:test';
 import {setTimeout} from 'node:timers/promises';
 
-import WebSocket from 'ws';
+import WebSocket, {WebSocketServer} from 'ws';
 
 import {open} from 'gicodec';
 import {Client, connect} from 'gicodec/client';
@@ -26,21 +26,29 @@ function run(program, ...options) {
   });
 }
 
+/** A server of `file`; its process and URL. */
+async function serve(name, address = '127.0.0.1:0') {
+  const ports = join(folder, name);
+  rmSync(ports, {force: true});
+  const child = spawn(join(PROGRAMS.split(':')[0], 'gi-server'),
+      ['--play', file, '--loop', '--listen-web', address, '--insecure-web', '--port-file', ports],
+      {stdio: ['ignore', 'ignore', 'pipe']});
+  let text = '';
+  child.stderr.on('data', (data) => (text += data));
+  for (const end = Date.now() + 30000; !existsSync(ports); await setTimeout(50)) {
+    assert.ok(child.exitCode === null && Date.now() < end, `gi-server: ${text}`);
+  }
+  return [child, `127.0.0.1:${readFileSync(ports, 'utf8').trim()}`];
+}
+
 before(async () => {
   folder = mkdtempSync(join(tmpdir(), 'gicodec-'));
   file = join(folder, 'room.gic');
-  const [serverFolder, traceFolder] = PROGRAMS.split(':');
+  const [, traceFolder] = PROGRAMS.split(':');
   await run(join(traceFolder, 'gi-trace'), '--scene', 'tomb', '--grid', '4x2x4', '--frames', '6', '--fps', '3', '-o', file);
-  const ports = join(folder, 'ports');
-  server = spawn(join(serverFolder, 'gi-server'),
-      ['--play', file, '--loop', '--listen-web', '127.0.0.1:0', '--insecure-web', '--port-file', ports],
-      {stdio: ['ignore', 'ignore', 'pipe']});
-  let text = '';
-  server.stderr.on('data', (data) => (text += data));
-  for (const end = Date.now() + 30000; !existsSync(ports); await setTimeout(50)) {
-    assert.ok(server.exitCode === null && Date.now() < end, `gi-server: ${text}`);
-  }
-  url = `ws://127.0.0.1:${readFileSync(ports, 'utf8').trim()}`;
+  let address;
+  [server, address] = await serve('ports');
+  url = `ws://${address}`;
 });
 
 after(() => {
@@ -132,6 +140,44 @@ test('recorded sessions have the hashes of C++, C and Python', async () => {
     assert.deepEqual(lines, expected.filter((line) => line.startsWith(name)));
     assert.equal(client.state.reason, 'the server ends');
   }
+});
+
+test('it comes back to a server that ended and began again', async () => {
+  let [own, address] = await serve('own');
+  const lost = [];
+  let again;
+  const done = new Promise((resolve) => (again = resolve));
+  const epochs = new Set();
+  const connection = await connect(`ws://${address}`, {
+    WebSocket, onLost: (wait, why) => lost.push(why),
+    onUpdate(client) {
+      epochs.add(client.state.epoch);
+      if (epochs.size === 1) own.kill('SIGTERM');
+      else again();
+    },
+  });
+  await new Promise((resolve) => own.on('exit', resolve));
+  assert.equal(connection.client.state.connected, false);
+  [own] = await serve('own', address);
+  await done;
+  assert.equal(lost[0], 'the server ends');
+  connection.close();
+  own.kill();
+});
+
+test('a server that says nothing counts as lost', async () => {
+  const silent = new WebSocketServer({port: 0, host: '127.0.0.1'});
+  await new Promise((resolve) => silent.on('listening', resolve));
+  const why = await new Promise((resolve, reject) => {
+    const stop = new AbortController();
+    connect(`ws://127.0.0.1:${silent.address().port}`, {
+      WebSocket, timeout: 200, signal: stop.signal,
+      onLost: (_, reason) => (stop.abort(), resolve(reason)),
+    }).catch(reject);
+  });
+  assert.match(why, /nothing came for 0.2 s/);
+  silent.close();
+  silent.clients.forEach((client) => client.terminate());
 });
 
 test('a client without a transport', async () => {

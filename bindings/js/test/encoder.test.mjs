@@ -57,7 +57,7 @@ test('a volume of probes, with guard bands', async () => {
   late.decode(encoder.snapshot());
   assert.deepEqual(late.read('vis'), textures.vis);
   assert.throws(() => encoder.encode({color: textures.color}), /"vis", which is missing/);
-  assert.throws(() => encoder.encode({...textures, sky: textures.vis}), /there is no texture "sky": there are color, vis/);
+  assert.throws(() => encoder.encode({...textures, sky: textures.vis}), /there is no texture "sky": there are "color", "vis"/);
 });
 
 test('engines\' layouts', async () => {
@@ -146,6 +146,32 @@ test('wrong calls are named', async () => {
   assert.throws(() => encoder.encode('text'), TypeError);
   const decoder = await Decoder.create(desc);
   assert.throws(() => decoder.decode(new Uint8Array(3)), {name: 'GicodecError'});
+});
+
+test('a refused frame does not spoil those behind it', async () => {
+  const color = await ddgiIrradiance([2, 2, 2]);
+  const room = {kind: 'probes', textures: [{name: 'constructor', ...color}]};
+  const writer = await Writer.create({room});
+  const texels = (value) => new color.ArrayType(color.textureBytes / 4).fill(value);
+  writer.add(0, {room: Object.assign(Object.create(null), {constructor: texels(0)})});
+  writer.add(5, {constructor: texels(5)});
+  for (const frame of [4, 5]) assert.throws(() => writer.add(frame, {constructor: texels(9)}), {code: 'wrong_frame'});
+  writer.add(6, {constructor: texels(6)});
+  const player = await open(writer.finish());
+  const found = [];
+  for await (const frame of player) found.push([frame, (await player.read(0))[0]]);
+  assert.deepEqual(found, [[0, 0], [5, 5], [6, 6]]);
+});
+
+test('names are whole, and shown safely', async () => {
+  const map = await mapTexture([8, 8], 'R8_UNORM', [8, 8]);
+  const named = (name) => Writer.create({room: {kind: 'textures', textures: [{name, ...map}]}});
+  await assert.rejects(named('a\0b'), TypeError);
+  await assert.rejects(named('a\ud800'), TypeError);
+  const writer = await named('a\x1b[31mred\x9b');
+  const player = await open(writer.finish());
+  await assert.rejects(player.read('none'), ({message}) => /31mred/.test(message) && !/[\x00-\x1f\x7f-\x9f]/.test(message));
+  await assert.rejects(open(new Uint8Array(9), {limits: {constructor: 1}}), /there is no constructor/);
 });
 
 test('one without memory ends alone', async () => {

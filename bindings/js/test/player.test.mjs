@@ -132,6 +132,27 @@ test('an AbortSignal ends it', async () => {
   await assert.rejects(player.next(), {name: 'AbortError'});
 });
 
+test('an AbortSignal ends the wait for a source', async () => {
+  const stop = new AbortController();
+  const opening = open(new Promise(() => {}), {signal: stop.signal});
+  setTimeout(() => stop.abort(), 20);
+  await assert.rejects(opening, {name: 'AbortError'});
+});
+
+test('small pieces go to workers together', async () => {
+  const data = golden(FILE);
+  const expected = await played(await open(data));
+  await useWorkers(1);
+  const pieces = Array.from({length: Math.ceil(data.length / 50)}, (_, i) => data.slice(50 * i, 50 * (i + 1)));
+  assert.deepEqual(await played(await open(Readable.from(pieces))), expected);
+  const into = new Uint8Array(new SharedArrayBuffer((await open(data)).textures[0].textureBytes));
+  const player = await open(data);
+  await player.next();
+  assert.deepEqual(hashOf(await player.read(0, into)), expected[0][2]);
+  await assert.rejects(useWorkers(1000), RangeError);
+  await useWorkers(0);
+});
+
 test('errors say what and where', async () => {
   await assert.rejects(open(new Uint8Array()), {code: 'truncated'});
   await assert.rejects(open(golden('bad_magic.gic')), {code: 'not_gicodec'});

@@ -29,6 +29,8 @@ export interface ClientState {
   volumes: number;
   /** Of the server's goodbye. */
   reason: string;
+  /** The same as the protocol's number, e.g. 11: the server ends. */
+  reasonNumber: number;
   messages: number;
   bytes: number;
   packets: number;
@@ -86,8 +88,10 @@ export const Client: {create(options?: ClientOptions): Promise<Client>};
 export interface ConnectOptions extends ClientOptions {
   /** Called after each message that changed what the client holds. */
   onUpdate?(client: Client): void;
-  /** Called when the connection was lost, with the milliseconds until the next try. */
-  onLost?(wait: number): void;
+  /** Called when the connection was lost, with the milliseconds until the next try, and why. */
+  onLost?(wait: number, why: string): void;
+  /** Milliseconds without a message after which a connection counts as lost: 20,000; 0: none. */
+  timeout?: number;
   /** False: ask for no blocks but those of client.subscribe() and client.setViewpoint(). */
   everything?: boolean;
   signal?: AbortSignal;

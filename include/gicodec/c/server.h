@@ -136,7 +136,8 @@ typedef struct gicodec_event {
   uint32_t reason;  ///< GICODEC_EVENT_DROPPED: why, gicodec_reason_text(); else 0
 } gicodec_event;
 
-/// The oldest event; GICODEC_END if there is none.
+/// The oldest event; GICODEC_END if there is none. Take them after each call: beyond some 65,000
+/// the oldest are dropped.
 GICODEC_C_API gicodec_status gicodec_server_event(gicodec_server* server, gicodec_event* out);
 /// The client's last viewpoint. GICODEC_UNKNOWN_CONNECTION; GICODEC_END if it sent none.
 GICODEC_C_API gicodec_status gicodec_server_viewpoint(const gicodec_server* server,

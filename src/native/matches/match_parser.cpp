@@ -37,7 +37,7 @@ class MatchFinder {
 
  private:
   static constexpr std::uint32_t kEnd = UINT32_MAX;
-  static constexpr unsigned kMaxHashBits = 17;
+  static constexpr unsigned kMaxHashBits = 22;
   [[nodiscard]] std::size_t hash(std::size_t at) const {
     return (word_at(&bytes_[at]) & 0xFFFFFF) * 0x9E3779B1U >> (32 - hash_bits_);
   }

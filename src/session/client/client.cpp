@@ -90,6 +90,7 @@ Status Client::receive(std::span<const std::byte> bytes) {
     if (const auto* goodbye = std::get_if<Goodbye>(&*message)) {
       s.goodbye = *goodbye;
       s.ticket = {};
+      s.welcome = false;
       return Status::end;
     }
     return Status::corrupt;

@@ -32,8 +32,16 @@ const Connection* Server::State::find_session(ConnectionId connection) const noe
   return found ? it->second.get() : nullptr;
 }
 
+void Server::State::tell(const ServerEvent& event) {
+  constexpr std::size_t kMost = 1 << 16;
+  if (events.size() >= kMost) {  // nobody takes them
+    events.erase(events.begin(), events.begin() + kMost / 2);
+  }
+  events.push_back(event);
+}
+
 void Server::State::event(ServerEvent::Type kind, const Connection& connection) {
-  events.push_back({kind, connection.id, connection.session->client, Reason::left});
+  tell({kind, connection.id, connection.session->client, Reason::left});
 }
 
 /// All of it or nothing.
@@ -153,7 +161,7 @@ void Server::disconnect(ConnectionId connection, double now) {
   }
   if (found->farewell) {
     static_cast<void>(guarded([&]() -> Status {
-      state_->events.push_back(*found->farewell);
+      state_->tell(*found->farewell);
       return Status::ok;
     }));
   }
@@ -180,7 +188,7 @@ void Server::tick(double now) {
     for (auto it = state_->sessions.begin(); it != state_->sessions.end();) {
       Session& session = *(it++)->second;
       if (session.connection != 0 || now - session.lost <= options.timeouts.linger) continue;
-      state_->events.push_back({ServerEvent::Type::expired, 0, session.client, Reason::left});
+      state_->tell({ServerEvent::Type::expired, 0, session.client, Reason::left});
       state_->end(session);
     }
     return Status::ok;
@@ -199,7 +207,7 @@ std::vector<ServerEvent> Server::take_events() {
   static_cast<void>(guarded([&]() -> Status {
     for (const auto& [id, connection] : state_->connections) {
       if (!connection->farewell) continue;
-      state_->events.push_back(*connection->farewell);
+      state_->tell(*connection->farewell);
       connection->farewell.reset();
     }
     return Status::ok;

@@ -187,7 +187,7 @@ void Server::State::make_room(Delivery delivery, std::size_t origin) {
     if (chosen == nullptr || before(*session, *chosen)) chosen = session.get();
   }
   if (chosen == nullptr) return;
-  events.push_back({ServerEvent::Type::expired, 0, chosen->client, Reason::full});
+  tell({ServerEvent::Type::expired, 0, chosen->client, Reason::full});
   end(*chosen);
 }
 

@@ -103,6 +103,7 @@ struct Server::State {
   [[nodiscard]] Connection* find(ConnectionId connection);
   /// Null if it does not exist, was dropped, or has no session.
   [[nodiscard]] const Connection* find_session(ConnectionId connection) const noexcept;
+  void tell(const ServerEvent& event);
   void event(ServerEvent::Type kind, const Connection& connection);
   Status send(Connection& connection, const AnyMessage& message);
   void drop(Connection& connection, Reason reason) noexcept;
