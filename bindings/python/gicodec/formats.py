@@ -69,6 +69,8 @@ class Components:
         words = words.reshape(*array.shape[:-1], self.bytes)
         if any(part.type == c.COMPONENT_OPAQUE for part in self.parts):
             raise ValueError("this format holds compressed blocks, which have no components")
+        if all(part.type == c.COMPONENT_EXPONENT for part in self.parts):
+            raise ValueError("this record has no component but an exponent")
         exponent = [part for part in self.parts if part.type == c.COMPONENT_EXPONENT]
         scale = None
         if exponent:
@@ -99,6 +101,8 @@ class Components:
         if part.type == c.COMPONENT_UFLOAT:
             if scale is not None:
                 return np.ldexp(bits.astype(np.float32), scale - part.bits)
+            if part.bits > 15:
+                raise ValueError(f"there are no unsigned floats of {part.bits} bits")
             return (bits << np.uint32(15 - part.bits)).astype(np.uint16).view(np.float16).astype(
                 np.float32)
         if part.type == c.COMPONENT_SFLOAT:
