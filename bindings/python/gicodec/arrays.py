@@ -131,7 +131,8 @@ def decode(data, *, out: np.ndarray | None = None, limits: dict | None = None,
         try:
             described = json.loads(about)
             shape, dtype = tuple(described["shape"]), np.dtype(described["dtype"])
-            if len(shape) > _MOST_AXES or not all(type(side) is int for side in shape):
+            whole = type(described["shape"]) is list and all(type(side) is int for side in shape)
+            if len(shape) > _MOST_AXES or not whole:
                 raise ValueError(f"shapes are of at most {_MOST_AXES} whole numbers")
         except (ValueError, KeyError, TypeError, RecursionError) as error:
             raise ValueError("the description of the array is damaged") from error

@@ -255,7 +255,7 @@ def test_closing_while_others_read():
 
 
 def test_arrays_of_strangers():
-    for shape in ([9] * 100_000, [None], [1.5], ["2"], [True]):
+    for shape in ([9] * 100_000, [None], [1.5], ["2"], [True], "", {}):
         about = {"array": json.dumps({"dtype": "|u1", "shape": shape})}
         desc = gicodec.map_texture((1, 1), "R8_UINT", (1, 1, 1))
         with gicodec.Writer(None, {"array": gicodec.VolumeDesc("textures", {"array": desc})},
