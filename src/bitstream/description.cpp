@@ -76,7 +76,9 @@ TextureDesc read_texture(ByteReader& reader) {
   desc.records = read_grid(reader, kMaxGridSide * kMaxBlockSide);
   desc.presence = static_cast<Presence>(reader.fixed<std::uint8_t>());
   desc.model = static_cast<Model>(reader.fixed<std::uint8_t>());
-  if (reader.ok() && validate(desc) != Status::ok) reader.fail(Status::corrupt);
+  if (!reader.ok()) return desc;
+  const Status status = validate(desc);
+  if (status != Status::ok) reader.fail(status_of_read(status));
   return desc;
 }
 
@@ -113,7 +115,8 @@ Result<VolumeDesc> read_volume_desc(std::uint8_t kind, std::span<const std::byte
     }
   }
   const bool agrees = volume->kind == kind && next == layouts.end();
-  if (!agrees || validate(*volume) != Status::ok) return Status::corrupt;
+  if (!agrees) return Status::corrupt;
+  if (const Status status = validate(*volume); status != Status::ok) return status_of_read(status);
   return volume;
 }
 

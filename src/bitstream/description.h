@@ -31,6 +31,13 @@ void write_texture(const TextureDesc& desc, ByteWriter& writer);
 [[nodiscard]] Status write_volume_desc(const VolumeDesc& volume, std::span<const Kind* const> kinds,
                                        std::vector<std::byte>& out);
 
+/// corrupt in place of a status that says that what was read makes no volume.
+constexpr Status status_of_read(Status status) {
+  const bool keeps =
+      status == Status::ok || status == Status::out_of_memory || status == Status::limit_exceeded;
+  return keeps ? status : Status::corrupt;
+}
+
 /// The layout of the texture of that name, from a container or a server.
 struct TextureLayout {
   std::string_view name;

@@ -5,6 +5,7 @@
 
 #include "base/bytes.h"
 #include "base/guard.h"
+#include "bitstream/description.h"
 
 #include <vector>
 
@@ -22,13 +23,6 @@ Status write_made(const VolumeDesc& volume, const Result<VolumeDesc>& made,
     write(writer);
     return Status::ok;
   });
-}
-
-/// corrupt in place of a status that says that what was read makes no volume.
-constexpr Status status_of_read(Status status) {
-  const bool keeps =
-      status == Status::ok || status == Status::out_of_memory || status == Status::limit_exceeded;
-  return keeps ? status : Status::corrupt;
 }
 
 /// The volume that is made from numbers as read; corrupt if they make none.

@@ -42,7 +42,8 @@ export class Connection {
     const is = () => socket === this.#socket && !this.#ended;
     socket.onopen = () => is() && this.#guard(() => socket.send(this.client.hello()));
     socket.onmessage = ({data}) => is() && this.#guard(() => this.#take(data));
-    socket.onclose = ({code, reason}) => is() && this.#again(this.#why || reason || `the connection closed (${code})`);
+    socket.onclose = (event) => is() && this.#again(
+        this.#why || event?.reason || `the connection closed (${event?.code ?? 'no code'})`);
     socket.onerror = (event) => (this.#why = event?.message ?? '');  // close follows
     this.#listen();
   }
