@@ -5,10 +5,9 @@
 namespace gicodec::c {
 
 Status status_of_caller(gicodec_status status) noexcept {
-  const bool known = status > 0 && status < UINT16_MAX &&
+  const bool known = status > GICODEC_END && status < UINT16_MAX &&
                      to_string(static_cast<Status>(status)) != to_string(Status(UINT16_MAX));
   if (status == GICODEC_OK) return Status::ok;
-  if (status == GICODEC_END) return Status::io_failed;
   return known ? static_cast<Status>(status) : Status::io_failed;
 }
 

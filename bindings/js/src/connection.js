@@ -39,7 +39,7 @@ export class Connection {
     this.#socket = socket;
     this.#why = '';
     socket.binaryType = 'arraybuffer';
-    const is = () => socket === this.#socket && !this.#ended;
+    const is = () => socket === this.#socket;
     socket.onopen = () => is() && this.#guard(() => socket.send(this.client.hello()));
     socket.onmessage = ({data}) => is() && this.#guard(() => this.#take(data));
     socket.onclose = (event) => is() && this.#again(
@@ -103,10 +103,7 @@ export class Connection {
 
   #again(why) {
     if (this.#ended) return;
-    const socket = this.#socket;
-    this.#socket = null;
-    socket?.close();
-    clearTimeout(this.#silence);
+    this.#leave();
     this.#wait = Math.min(Math.max(this.#wait * 2, 250), 8000);
     this.#options.onLost?.(this.#wait, why);
     if (this.#ended) return;  // it called close()
@@ -136,8 +133,15 @@ export class Connection {
   #stop() {
     this.#ended = true;
     clearTimeout(this.#timer);
-    clearTimeout(this.#silence);
     this.#options.signal?.removeEventListener('abort', this.#abort);
-    this.#socket?.close();
+    this.#leave();
+  }
+
+  /** Closes the connection, and hears no more of it. */
+  #leave() {
+    const socket = this.#socket;
+    this.#socket = null;
+    clearTimeout(this.#silence);
+    socket?.close();
   }
 }

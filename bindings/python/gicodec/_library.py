@@ -143,23 +143,19 @@ library = _Library()
 
 
 # ctypes cuts numbers that do not fit.
-_MOST_UNSIGNED = {ctypes.c_uint32: 2**32 - 1, ctypes.c_uint64: 2**64 - 1}
-_MOST = {ctypes.c_int32: 2**31 - 1}
+_RANGES = {ctypes.c_uint32: (0, 2**32 - 1), ctypes.c_uint64: (0, 2**64 - 1),
+           ctypes.c_int32: (-2**31, 2**31 - 1)}
 
 
 def sized(kind: type, **fields):
     """A struct of its own size; its fields by name."""
-    for name in fields:
-        if not hasattr(kind, name):
-            known = ", ".join(field for field, _ in kind._fields_[1:])
-            raise TypeError(f"there is no {name!r}: {known} are")
-    for name, type in kind._fields_:
-        most = _MOST.get(type)
-        if most is not None and not -most - 1 <= fields.get(name, 0) <= most:
-            raise ValueError(f"{name} is at most {most}, not {fields[name]}")
-        unsigned = _MOST_UNSIGNED.get(type)
-        if unsigned is not None and not 0 <= fields.get(name, 0) <= unsigned:
-            raise ValueError(f"{name} is 0 to {unsigned}, not {fields[name]}")
+    types = dict(kind._fields_)
+    for name, value in fields.items():
+        if name not in types:
+            raise TypeError(f"there is no {name!r}: {', '.join(list(types)[1:])} are")
+        least, most = _RANGES.get(types[name], (None, None))
+        if most is not None and not least <= value <= most:
+            raise ValueError(f"{name} is {least} to {most}, not {value}")
     return kind(struct_size=ctypes.sizeof(kind), **fields)
 
 

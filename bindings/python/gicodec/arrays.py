@@ -122,8 +122,9 @@ def decode(data, *, out: np.ndarray | None = None, limits: dict | None = None,
     bytes of strangers, give it or ``limits``.
     """
     if expected is not None and limits is None:
-        limits = {"max_texture_bytes": max(1 << 30, 2 * expected[0]), "max_packet_bytes": max(1 << 30, 2 * expected[0]),
-                  "max_work_bytes": max(2 << 30, 2 * expected[0]), "max_total_bytes": max(4 << 30, 8 * expected[0])}
+        usual = {"max_texture_bytes": 1 << 30, "max_packet_bytes": 1 << 30, "max_work_bytes": 2 << 30}
+        limits = {name: max(most, 2 * expected[0]) for name, most in usual.items()}
+        limits["max_total_bytes"] = max(4 << 30, 8 * expected[0])
     with File(data, threads=threads, limits=limits) as file:
         about = file.metadata.get("array")
         if about is None or "array" not in file:

@@ -172,15 +172,21 @@ class Contents:
         place = range(len(self.frames))[index]  # negative ones, and IndexError
         with self._turns.setdefault(texture, threading.Lock()):
             try:
-                player = self._player(texture, tiling)
-                player.go_to(place, self.frames)
+                player = self._reached(texture, tiling, place)
             except ResourceError as error:  # of what the players of other textures hold?
                 with self._opening:
                     if error.status != c.LIMIT_EXCEEDED or not self._close_idle(texture, 0):
-                        raise self._with_cure(error)
-                player = self._player(texture, tiling)
-                player.go_to(place, self.frames)
+                        raise
+                player = self._reached(texture, tiling, place)
             yield player
+
+    def _reached(self, texture: int, tiling: str | None, place: int) -> Player:
+        player = self._player(texture, tiling)
+        try:
+            player.go_to(place, self.frames)
+        except ResourceError as error:
+            raise self._with_cure(error)
+        return player
 
     def _player(self, texture: int, tiling: str | None) -> Player:
         with self._opening:

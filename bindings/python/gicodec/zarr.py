@@ -47,8 +47,8 @@ class GicodecCodec(ArrayBytesCodec):
 
     async def _decode_single(self, chunk_bytes, chunk_spec):
         type_of = getattr(chunk_spec.dtype, "to_native_dtype", lambda: np.dtype(chunk_spec.dtype))
-        type = type_of().newbyteorder("=")
-        expected = math.prod(chunk_spec.shape) * type.itemsize, type
+        dtype = type_of().newbyteorder("=")
+        expected = math.prod(chunk_spec.shape) * dtype.itemsize, dtype
         array = await asyncio.to_thread(arrays.decode, chunk_bytes.to_bytes(), expected=expected)
         return chunk_spec.prototype.nd_buffer.from_ndarray_like(array.reshape(chunk_spec.shape))
 
