@@ -21,8 +21,6 @@ set(avx512_flags ${avx2_flags} -mavx512f -mavx512bw -mavx512cd -mavx512dq -mavx5
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC 12 warns about undefined registers in its own AVX-512 headers.
   list(APPEND avx512_flags -Wno-uninitialized -Wno-maybe-uninitialized)
-  # The baseline's many loops take a third less time to compile, and run as fast.
-  list(APPEND scalar_flags -fno-gcse-after-reload --param=sccvn-max-alias-queries-per-access=30)
 endif()
 set(simd128_flags -msimd128)
 if(MSVC AND CMAKE_CXX_COMPILER_ID STREQUAL "MSVC")
