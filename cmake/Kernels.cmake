@@ -58,7 +58,7 @@ function(gicodec_kernels name)
       ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
     target_link_libraries(${objects} PRIVATE gicodec_flags)
     set_target_properties(${objects} PROPERTIES
-      POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden)
+      UNITY_BUILD OFF POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden)
     list(APPEND kernels $<TARGET_OBJECTS:${objects}>)
   endforeach()
   set(${name}_kernels ${kernels} CACHE INTERNAL "")

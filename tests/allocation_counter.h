@@ -5,6 +5,8 @@
 
 namespace gicodec::test {
 
+inline constexpr std::size_t kKiB = 1024, kMiB = 1024 * kKiB;
+
 /// Bytes allocated now, plus a constant.
 [[nodiscard]] std::size_t heap_bytes() noexcept;
 /// The most that heap_bytes() was since the last call of start_peak().

@@ -13,8 +13,6 @@ namespace {
 
 using namespace test;
 
-constexpr auto kEnd = std::numeric_limits<std::uint64_t>::max();
-
 std::vector<ContainerPacket> only(const Sample& sample, std::span<const TextureRegion> regions) {
   std::vector<ContainerPacket> packets;
   for (const ContainerPacket& packet : sample.packets) {

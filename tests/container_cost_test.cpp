@@ -11,8 +11,6 @@ namespace {
 
 using namespace test;
 
-constexpr std::size_t kKiB = 1024;
-
 ContainerDescription one_texture(const TextureDesc& desc) {
   ContainerDescription description;
   const NamedTexture texture{"texture", desc};

@@ -14,8 +14,6 @@ namespace {
 
 using namespace test;
 
-constexpr auto kEnd = std::numeric_limits<std::uint64_t>::max();
-
 Bytes part_entry(std::span<const SeekEntry> packets, std::uint64_t before, std::uint64_t offset) {
   Bytes body;
   write_index_part(packets, before, offset, body);

@@ -11,10 +11,14 @@
 #include "bitstream/packet.h"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <string>
 
 namespace gicodec::test {
+
+/// Behind every frame and byte that there can be.
+inline constexpr auto kEnd = std::numeric_limits<std::uint64_t>::max();
 
 /// Memory as a pipe gives it: no size, no seeking. Tells what was asked for at once.
 class PipeSource final : public Source {

@@ -51,7 +51,7 @@ std::vector<Bytes> decode_with(Isa isa, const TextureDesc& desc,
   return textures;
 }
 
-constexpr Coding kCodings[] = {
+constexpr Coding kIsaCodings[] = {
     {"raw", 0, true}, {"lz4", 0, true}, {"zstd", 0, true}, {"native", 0, true, "fast"}};
 constexpr Coding kStrong{"native", 0, true, "strong"};
 
@@ -64,11 +64,11 @@ std::vector<Case> cases() {
   std::vector<Case> all;
   for (const auto& info : test::distinct_formats()) {
     const TextureDesc desc = probe_texture(info.record, {3, 2, 2}, 5, 1, Tiling::slices_xz_y);
-    for (const auto& coding : kCodings) {
+    for (const auto& coding : kIsaCodings) {
       all.push_back({desc, coding});
     }
   }
-  for (const auto& coding : kCodings) {
+  for (const auto& coding : kIsaCodings) {
     all.push_back({ddgi_irradiance({4, 3, 2}), coding});
     all.push_back({ddgi_visibility({2, 1, 2}), coding});
   }
@@ -143,7 +143,7 @@ TEST(Isa, MachinesDoNotChangeBytes) {
 TEST(Isa, ASetThatTheMachineLacksIsRefused) {
   constexpr auto kUnknown = static_cast<Isa>(200);
   const auto desc = ddgi_irradiance({2, 2, 2});
-  for (const auto& coding : kCodings) {
+  for (const auto& coding : kIsaCodings) {
     auto options = options_of(coding);
     options.settings.isa = kUnknown;
     EXPECT_EQ(Encoder::create(desc, options).status(), Status::invalid_settings) << coding.backend;

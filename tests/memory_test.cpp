@@ -16,8 +16,6 @@ namespace {
 
 using namespace test;
 
-constexpr std::size_t kKiB = 1024, kMiB = 1024 * kKiB;
-
 /// The page's formulas, for the texture `of` and a number of threads per packet.
 struct Bounds {
   const TextureDesc& of;

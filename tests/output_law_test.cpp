@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kTools = GICODEC_SOURCE_DIR "/../tools";
+constexpr const char* kToolsFolder = GICODEC_SOURCE_DIR "/../tools";
 
 /// Calls that write text without these, by the file that may use them.
 const std::map<std::string, std::set<std::string>>& exceptions() {
@@ -53,11 +53,11 @@ std::set<std::string> writes_of(std::string line) {
 TEST(OutputLaw, TextIsWrittenInOnePlace) {
   std::map<std::string, std::set<std::string>> found;
   std::size_t files = 0;
-  for (const auto& entry : fs::recursive_directory_iterator(kTools)) {
+  for (const auto& entry : fs::recursive_directory_iterator(kToolsFolder)) {
     const std::string extension = entry.path().extension();
     if (extension != ".cpp" && extension != ".h") continue;
     ++files;
-    const std::string own = fs::relative(entry.path(), kTools).generic_string();
+    const std::string own = fs::relative(entry.path(), kToolsFolder).generic_string();
     std::ifstream file(entry.path());
     for (std::string line; std::getline(file, line);)
       for (const std::string& word : writes_of(line)) found[own].insert(word);

@@ -16,14 +16,14 @@ namespace {
 using namespace test;
 
 /// A keyframe and an update with stale guard bands and a partial selection.
-struct Pair {
+struct PacketPair {
   TextureDesc desc;
   Packet keyframe, update;
   Bytes after_keyframe;
 };
 
-Pair make_pair_of_packets(const Coding& coding, const Record& record, Random& random) {
-  Pair pair;
+PacketPair make_pair_of_packets(const Coding& coding, const Record& record, Random& random) {
+  PacketPair pair;
   pair.desc = probe_texture(record, {3, 2, 1}, 2, 1, Tiling::atlas_xy_z);
   Texture texture(pair.desc);
   texture.fill(Fill::small, random);
@@ -42,7 +42,7 @@ Pair make_pair_of_packets(const Coding& coding, const Record& record, Random& ra
 /// refused the decoder must be what it was.
 class Victim {
  public:
-  explicit Victim(const Pair& pair)
+  explicit Victim(const PacketPair& pair)
       : pair_(pair), decoder_(*Decoder::create(pair.desc)), out_(pair.desc, 3) {
     restore();
   }
@@ -69,7 +69,7 @@ class Victim {
  private:
   void restore() { EXPECT_EQ(decoder_.decode(pair_.keyframe, out_.view()), Status::ok); }
 
-  const Pair& pair_;
+  const PacketPair& pair_;
   Decoder decoder_;
   Texture out_;
   std::uint32_t refused_ = 0;

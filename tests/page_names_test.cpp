@@ -16,10 +16,10 @@
 namespace {
 
 namespace fs = std::filesystem;
-using Names = std::set<std::string, std::less<>>;
+using NameSet = std::set<std::string, std::less<>>;
 
 /// What belongs to others, or stands for any name.
-const Names kOthers = {
+const NameSet kOthers = {
     "bevy_pbr::light_probe::irradiance_volume",
     "de265_image::fill_image",
     "de265_image::get_image_plane_at_pos_any_depth",
@@ -112,7 +112,7 @@ class Tree {
  private:
   struct Source {
     std::string text;
-    Names words, defined;
+    NameSet words, defined;
   };
 
   void add(const fs::path& path) {
@@ -123,7 +123,7 @@ class Tree {
                       extension == ".glsl" || extension == ".hlsl" || extension == ".cmake" ||
                       path.filename() == "CMakeLists.txt";
     const bool script = extension.empty() || extension == ".sh" || extension == ".py";
-    // Names of this test itself prove nothing.
+    // NameSet of this test itself prove nothing.
     if (path == fs::path(__FILE__) || path.filename() == "page_names_test.cpp") return;
     if (script) note_flags(read(path), true);
     if (!code) return;
@@ -178,7 +178,7 @@ class Tree {
   }
 
   fs::path root_ = root();
-  Names files_, called_, flags_;
+  NameSet files_, called_, flags_;
   std::vector<Source> sources_;
 };
 

@@ -124,19 +124,20 @@ struct Row {
 
 inline std::vector<Row> payload_rows() {
   const auto probes = [](std::vector<NamedTexture> textures) { return *probe_volume(textures); };
-  constexpr Grid kGrid{3, 2, 2};
+  constexpr Grid kSmallGrid{3, 2, 2};
   return {
-      {"probes", probes({{"color", ddgi_irradiance(kGrid)}, {"vis", ddgi_visibility(kGrid)}})},
+      {"probes",
+       probes({{"color", ddgi_irradiance(kSmallGrid)}, {"vis", ddgi_visibility(kSmallGrid)}})},
       {"probes of engines",
-       probes({{"color", probe_texture(Format::R16G16B16A16_SFLOAT, kGrid, 6, 1)},
-               {"distance", probe_texture(Format::R32G32_SFLOAT, kGrid, 14, 1)},
-               {"packed", probe_texture(Format::B10G11R11_UFLOAT_PACK32, kGrid, 8, 0)},
-               {"sh", probe_texture(Format::R8G8B8A8_SNORM, kGrid, 2, 0)},
-               {"state", probe_texture(Format::R8_UINT, kGrid, 1, 0)},
-               {"bc6h", probe_texture(Format::BC6H_UFLOAT_BLOCK, kGrid, 2, 0)}})},
+       probes({{"color", probe_texture(Format::R16G16B16A16_SFLOAT, kSmallGrid, 6, 1)},
+               {"distance", probe_texture(Format::R32G32_SFLOAT, kSmallGrid, 14, 1)},
+               {"packed", probe_texture(Format::B10G11R11_UFLOAT_PACK32, kSmallGrid, 8, 0)},
+               {"sh", probe_texture(Format::R8G8B8A8_SNORM, kSmallGrid, 2, 0)},
+               {"state", probe_texture(Format::R8_UINT, kSmallGrid, 1, 0)},
+               {"bc6h", probe_texture(Format::BC6H_UFLOAT_BLOCK, kSmallGrid, 2, 0)}})},
       {"textures", plain_volume()},
-      {"irradiance vectors", *irradiance_vector_volume(kGrid)},
-      {"irradiance vectors in floats", *irradiance_vector_volume(kGrid, true)},
+      {"irradiance vectors", *irradiance_vector_volume(kSmallGrid)},
+      {"irradiance vectors in floats", *irradiance_vector_volume(kSmallGrid, true)},
       {"irradiance maps", *irradiance_map_volume({.width = 35, .height = 18})},
       {"irradiance maps by bases", *irradiance_map_volume({.width = 32,
                                                            .height = 20,

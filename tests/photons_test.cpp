@@ -15,34 +15,36 @@
 namespace gicodec {
 namespace {
 
-using Bytes = std::array<std::byte, kPhotonBytes>;
+using PhotonBytes = std::array<std::byte, kPhotonBytes>;
 
 constexpr std::array<PhotonForm, 2> kForms{PhotonForm::halves, PhotonForm::shared_exponent};
 const PhotonBatch kBox{{-3, 1, 20}, {6, 4.5F, 0.25F}, 10, 0, 0, 1};
 
 template <typename T>
-T field(const Bytes& bytes, std::size_t at) {
+T field(const PhotonBytes& bytes, std::size_t at) {
   T value{};
   std::memcpy(&value, bytes.data() + at, sizeof value);
   return value;
 }
 template <typename T>
-void set_field(Bytes& bytes, std::size_t at, T value) {
+void set_field(PhotonBytes& bytes, std::size_t at, T value) {
   std::memcpy(bytes.data() + at, &value, sizeof value);
 }
 
-Bytes packed(const Photon& photon, PhotonForm form, const PhotonBatch& box = kBox) {
-  Bytes bytes{};
+PhotonBytes packed(const Photon& photon, PhotonForm form, const PhotonBatch& box = kBox) {
+  PhotonBytes bytes{};
   pack_photon(photon, box, form, bytes);
   return bytes;
 }
-Photon unpacked(const Bytes& bytes, PhotonForm form, const PhotonBatch& box = kBox) {
+Photon unpacked(const PhotonBytes& bytes, PhotonForm form, const PhotonBatch& box = kBox) {
   return unpack_photon(bytes, box, form);
 }
-Bytes again(const Bytes& bytes, PhotonForm form) { return packed(unpacked(bytes, form), form); }
+PhotonBytes again(const PhotonBytes& bytes, PhotonForm form) {
+  return packed(unpacked(bytes, form), form);
+}
 
-Bytes any_bytes() {
-  Bytes bytes{};
+PhotonBytes any_bytes() {
+  PhotonBytes bytes{};
   for (std::byte& byte : bytes) byte = static_cast<std::byte>(*rc::gen::inRange(0, 256));
   return bytes;
 }
@@ -69,7 +71,7 @@ TEST(Photons, CapacitiesAreThoseThatBlocksCanHave) {
 
 TEST(Photons, EveryPlaceComesBack) {
   for (std::uint32_t code = 0; code <= 0xFFFF; ++code) {
-    Bytes bytes{};
+    PhotonBytes bytes{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       set_field(bytes, 2 * axis, static_cast<std::uint16_t>(code));
     }
@@ -83,12 +85,12 @@ TEST(Photons, EveryPlaceComesBack) {
 }
 
 /// A direction, and that of its code, whose code it is again.
-void check_direction(const Bytes& bytes, PhotonForm form, double most_off) {
+void check_direction(const PhotonBytes& bytes, PhotonForm form, double most_off) {
   const Photon photon = unpacked(bytes, form);
   const auto& d = photon.direction;
   const double length = std::sqrt(double{d[0]} * d[0] + double{d[1]} * d[1] + double{d[2]} * d[2]);
   ASSERT_NEAR(length, 1, 1e-6);
-  const Bytes canonical = packed(photon, form);
+  const PhotonBytes canonical = packed(photon, form);
   const Photon same = unpacked(canonical, form);
   for (std::size_t i = 0; i < 3; ++i) ASSERT_NEAR(same.direction[i], d[i], most_off);
   ASSERT_EQ(packed(same, form), canonical);
@@ -97,7 +99,7 @@ void check_direction(const Bytes& bytes, PhotonForm form, double most_off) {
 TEST(Photons, EveryDirectionComesBack) {
   std::size_t aliases = 0;
   for (std::uint32_t code = 0; code <= 0xFFFF; ++code) {
-    Bytes bytes{};
+    PhotonBytes bytes{};
     set_field(bytes, 6, static_cast<std::uint16_t>(code));
     check_direction(bytes, PhotonForm::halves, 1e-6);
     aliases += again(bytes, PhotonForm::halves) != bytes;
@@ -106,7 +108,7 @@ TEST(Photons, EveryDirectionComesBack) {
   EXPECT_EQ(aliases, 511U + 4 * 126 + 3);
   for (std::int32_t u = -32768; u <= 32767; u += 7) {
     for (const std::int32_t v : {-32768, -32767, -20000, -1, 0, 1, 12345, 32766, 32767, u}) {
-      Bytes bytes{};
+      PhotonBytes bytes{};
       set_field(bytes, 6, static_cast<std::int16_t>(u));
       set_field(bytes, 8, static_cast<std::int16_t>(v));
       check_direction(bytes, PhotonForm::shared_exponent, 1e-6);
@@ -121,7 +123,7 @@ RC_GTEST_PROP(Photons, DirectionsAreNearTheirCode, ()) {
   const float length = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
   for (float& v : d) v /= length;
   for (const PhotonForm form : kForms) {
-    const Bytes bytes = packed({.direction = d}, form);
+    const PhotonBytes bytes = packed({.direction = d}, form);
     RC_ASSERT(again(bytes, form) == bytes);
     const Photon photon = unpacked(bytes, form);
     double cosine = 0;
@@ -132,12 +134,12 @@ RC_GTEST_PROP(Photons, DirectionsAreNearTheirCode, ()) {
 
 TEST(Photons, EveryHalfComesBack) {
   for (std::uint32_t code = 0; code < 0x7C00; ++code) {
-    Bytes bytes{};
+    PhotonBytes bytes{};
     for (std::size_t at = 8; at < 16; at += 2) {
       set_field(bytes, at, static_cast<std::uint16_t>(code));
     }
     ASSERT_EQ(again(bytes, PhotonForm::halves), bytes) << code;
-    Bytes shared{};
+    PhotonBytes shared{};
     set_field(shared, 10, static_cast<std::uint16_t>(code));
     ASSERT_EQ(again(shared, PhotonForm::shared_exponent), shared) << code;
   }
@@ -163,7 +165,7 @@ TEST(Photons, EverySharedExponentComesBack) {
       for (const std::uint32_t other : {0U, 1U, most / 3, most}) {
         if (other > most) continue;
         const std::uint32_t code = exponent << 27 | most << 9 | other | (most / 2) << 18;
-        Bytes bytes{};
+        PhotonBytes bytes{};
         set_field(bytes, 12, code);
         ASSERT_EQ(again(bytes, PhotonForm::shared_exponent), bytes) << code;
       }
@@ -173,8 +175,8 @@ TEST(Photons, EverySharedExponentComesBack) {
 
 RC_GTEST_PROP(Photons, WhatPackingGivesComesBack, ()) {
   const auto form = *rc::gen::elementOf(kForms);
-  const Bytes any = any_bytes();
-  const Bytes once = packed(unpacked(any, form), form);
+  const PhotonBytes any = any_bytes();
+  const PhotonBytes once = packed(unpacked(any, form), form);
   RC_ASSERT(again(once, form) == once);
 }
 
@@ -213,14 +215,14 @@ RC_GTEST_PROP(Photons, BatchesComeBack, ()) {
 RC_GTEST_PROP(Photons, SortingForgetsTheOrderAndKeepsTheRest, ()) {
   const auto form = *rc::gen::elementOf(kForms);
   const TextureDesc desc = photon_volume(1, 64, form)->groups[0].textures[2].desc;
-  std::vector<Bytes> photons(*rc::gen::inRange<std::size_t>(0, 65));
-  for (Bytes& bytes : photons) {
+  std::vector<PhotonBytes> photons(*rc::gen::inRange<std::size_t>(0, 65));
+  for (PhotonBytes& bytes : photons) {
     if (*rc::gen::inRange(0, 10) == 0) continue;  // one of zeros
     bytes = any_bytes();
     for (std::size_t at = 0; at < 6; ++at) bytes[at] &= std::byte{0x81};  // places often agree
   }
   const auto sorted = [&] {
-    std::vector<Bytes> block = photons;
+    std::vector<PhotonBytes> block = photons;
     block.resize(64);
     kPhotons.sort(desc, std::as_writable_bytes(std::span(block)));
     return block;
@@ -233,8 +235,9 @@ RC_GTEST_PROP(Photons, SortingForgetsTheOrderAndKeepsTheRest, ()) {
   std::sort(before.begin(), before.end());
   std::sort(after.begin(), after.end());
   RC_ASSERT(before == after);
-  const auto zero = std::find(first.begin(), first.end(), Bytes{});
-  RC_ASSERT(std::all_of(zero, first.end(), [](const Bytes& b) { return b == Bytes{}; }));
+  const auto zero = std::find(first.begin(), first.end(), PhotonBytes{});
+  RC_ASSERT(
+      std::all_of(zero, first.end(), [](const PhotonBytes& b) { return b == PhotonBytes{}; }));
   auto count = std::vector<std::byte>(2);
   kPhotons.sort(photon_volume(1, 64, form)->groups[0].textures[0].desc, count);
   RC_ASSERT(count == std::vector<std::byte>(2));

@@ -17,13 +17,13 @@ namespace {
 using namespace test;
 
 /// FORMAT.md's table: number, bytes, components as "R 8@0, G 8@8".
-struct Row {
+struct FormatRow {
   std::string_view name;
   std::uint32_t number;
   unsigned bytes;
   std::string_view components;
 };
-constexpr Row kTable[] = {
+constexpr FormatRow kTable[] = {
     {"R8_UNORM", 9, 1, "R 8@0"},
     {"R8_SNORM", 10, 1, "R 8@0"},
     {"R8_UINT", 13, 1, "R 8@0"},

@@ -21,7 +21,7 @@ constexpr Executor kOneByOne{
     }};
 
 const Coding kPresets[] = {{"native", 0, true, "fast"}, {"native", 0, true, "strong"}};
-const Coding kCodings[] = {
+const Coding kSteadyCodings[] = {
     kPresets[0], kPresets[1], {"raw", 0, true}, {"lz4", 1, true}, {"zstd", 3, true}};
 
 /// Probes, bricks and pools; blocks of one record and of many, of all records and of some; one
@@ -116,7 +116,7 @@ TEST(SteadyState, TheNativeBackendAllocatesNothing) {
 
 TEST(SteadyState, SessionsAllocateNothing) {
   for (const auto& desc : shapes()) {
-    for (const auto& coding : kCodings) {
+    for (const auto& coding : kSteadyCodings) {
       const Threads threads{coding.level % 2 == 0 ? 3U : 1U, kOneByOne};
       std::vector<std::unique_ptr<Texture>> frames;
       Random random(91);

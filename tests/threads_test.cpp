@@ -144,7 +144,7 @@ TextureDesc masked() {
 }
 
 /// Records and presence change in many blocks or few, guard bands by the rule or not.
-void change(Texture& texture, Bytes& presence, std::uint32_t one_in, Random& random) {
+void change_one_in(Texture& texture, Bytes& presence, std::uint32_t one_in, Random& random) {
   const auto& desc = texture.desc();
   for (std::uint32_t block = 0; block < block_count(desc); ++block) {
     if (!chance(random, one_in)) continue;
@@ -170,7 +170,7 @@ TEST(Threads, SessionsDoWhatTheyDoOnOne) {
     std::vector<std::uint32_t> twice = some;
     twice.insert(twice.end(), some.begin(), some.end());
     for (const std::uint32_t one_in : {1, 2, 40, 3, 100000}) {
-      change(texture, presence, one_in, random);
+      change_one_in(texture, presence, one_in, random);
       const bool keyframe = one_in == 3;  // Of some blocks.
       Packet packets[2];
       for (Pair* pair : {&one, &many}) {

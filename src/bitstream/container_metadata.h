@@ -15,12 +15,12 @@
 namespace gicodec {
 
 /// Bytes of a text in a description.
-inline constexpr std::size_t kMaxText = std::size_t{1} << 20;
+inline constexpr std::size_t kMaxMetadataText = std::size_t{1} << 20;
 
 /// corrupt unless it is UTF-8 of at most `most` bytes.
 [[nodiscard]] std::string read_text(ByteReader& reader, std::size_t most);
 void write_metadata(const Metadata& metadata, ByteWriter& writer);
-void read_metadata(ByteReader& reader, Metadata& metadata, std::size_t most = kMaxText);
+void read_metadata(ByteReader& reader, Metadata& metadata, std::size_t most = kMaxMetadataText);
 
 /// Entries that a metadata entry may hold, and bytes of its metadata.
 inline constexpr std::size_t kMaxPackedEntries = std::size_t{1} << 18;

@@ -128,7 +128,7 @@ gicodec_status gicodec_container_add_metadata(gicodec_container* container, uint
     return GICODEC_INVALID_ARGUMENT;
   }
   if (!is_utf8(name) || !is_utf8(value)) return GICODEC_INVALID_NAME;
-  if (std::strlen(name) > kMaxText || std::strlen(value) > kMaxText) {
+  if (std::strlen(name) > kMaxMetadataText || std::strlen(value) > kMaxMetadataText) {
     return GICODEC_LIMIT_EXCEEDED;
   }
   auto* const metadata = const_cast<Metadata*>(c::find_metadata_of(container, of, index));

@@ -29,7 +29,7 @@ UploadBox box_of(const TextureDesc& desc, const CheckedView<const std::byte>& vi
 }
 
 /// Orders by slice, row, column.
-bool before(const UploadBox& a, const UploadBox& b) noexcept {
+bool is_before(const UploadBox& a, const UploadBox& b) noexcept {
   if (a.slice != b.slice) return a.slice < b.slice;
   return a.y != b.y ? a.y < b.y : a.x < b.x;
 }
@@ -52,7 +52,7 @@ Status upload_boxes(const TextureDesc& desc, const ConstTextureView& view,
   return guarded([&]() -> Status {
     out.clear();
     for (const std::uint32_t block : blocks) out.push_back(box_of(desc, *checked, block));
-    std::sort(out.begin(), out.end(), before);
+    std::sort(out.begin(), out.end(), is_before);
     std::size_t rows = 0;
     for (const UploadBox& next : out) {
       if (rows > 0 && continues(out[rows - 1], next)) {

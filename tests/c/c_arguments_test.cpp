@@ -19,8 +19,6 @@ namespace {
 
 using namespace test;
 
-constexpr gicodec_status kInvalid = GICODEC_INVALID_ARGUMENT;
-
 std::string text_of(const std::filesystem::path& path) {
   std::ifstream file(path);
   return {std::istreambuf_iterator<char>(file), {}};

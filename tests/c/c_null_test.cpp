@@ -11,8 +11,6 @@ namespace {
 
 using namespace test;
 
-constexpr gicodec_status kInvalid = GICODEC_INVALID_ARGUMENT;
-
 TEST(CNull, NullInPlaceOfAHandleOrAnOutput) {
   auto desc = irradiance();
   const auto volume = room(desc);

@@ -11,6 +11,8 @@
 
 namespace gicodec::test {
 
+inline constexpr gicodec_status kInvalid = GICODEC_INVALID_ARGUMENT;
+
 /// A struct of its own size, all else zero.
 template <typename Struct>
 [[nodiscard]] Struct sized() {

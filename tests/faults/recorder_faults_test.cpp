@@ -20,7 +20,7 @@ namespace {
 
 using namespace test;
 
-constexpr Grid kGrid{3, 2, 2};
+constexpr Grid kRecordedGrid{3, 2, 2};
 
 class Recording final : public ClientListener {
  public:
@@ -62,9 +62,10 @@ class Recording final : public ClientListener {
 
 void run(Fault& fault, Delivery delivery) {
   auto server = *Server::create({.backend = "raw", .region = {2, 2, 2}});
-  Texture texture(probe_texture(Format::R16_SFLOAT, kGrid, 2));
+  Texture texture(probe_texture(Format::R16_SFLOAT, kRecordedGrid, 2));
   Random random(1);
-  ASSERT_TRUE(server.add_volume("volume", probes_of({{"color", texture.desc()}}), {kGrid}).ok());
+  ASSERT_TRUE(
+      server.add_volume("volume", probes_of({{"color", texture.desc()}}), {kRecordedGrid}).ok());
   Recording recording(fault);
   auto client = *Client::create({.delivery = delivery, .listener = &recording});
   const ConnectionId connection = *server.connect(0);

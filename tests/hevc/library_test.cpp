@@ -11,14 +11,14 @@
 namespace gicodec::test {
 namespace {
 
-struct Texture {
-  explicit Texture(const TextureDesc& desc) : bytes(texture_bytes(desc)) {}
+struct OwnTexture {
+  explicit OwnTexture(const TextureDesc& desc) : bytes(texture_bytes(desc)) {}
   TextureView view() { return {bytes}; }
   std::vector<std::byte> bytes;
 };
 
 // Random walks of some records, guard bands included: stale ones are part of the job.
-void disturb(std::mt19937& random, Texture& texture) {
+void disturb(std::mt19937& random, OwnTexture& texture) {
   for (std::size_t i = 0; i < texture.bytes.size(); ++i) {
     if (random() % 16 == 0) texture.bytes[i] ^= static_cast<std::byte>(random() & 7U);
   }
@@ -36,7 +36,7 @@ void expect_equal_mirrors(const TextureDesc& desc, const HevcSettings& settings)
   ASSERT_TRUE(decoder.ok());
   EXPECT_EQ(encoder->lossy(), settings.lossy_qp >= 0);
   std::mt19937 random(3);
-  Texture source(desc), known(desc), decoded(desc);
+  OwnTexture source(desc), known(desc), decoded(desc);
   for (int i = 0; i < 7; ++i) {
     disturb(random, source);
     const auto packet = encoder->encode(source.view());

@@ -61,22 +61,22 @@ struct Poor {
   const char* name;
   std::byte (*byte)(std::size_t record, std::size_t byte, std::size_t size, const Bytes& noise);
 };
-std::byte at(const Bytes& noise, std::size_t i) { return noise[i % noise.size()]; }
+std::byte byte_at(const Bytes& noise, std::size_t i) { return noise[i % noise.size()]; }
 std::size_t number(const Bytes& noise, std::size_t i) {
-  return std::to_integer<std::size_t>(at(noise, i));
+  return std::to_integer<std::size_t>(byte_at(noise, i));
 }
 constexpr Poor kPoor[] = {
     {"constant", [](auto, auto, auto, const Bytes&) { return std::byte{7}; }},
-    {"noise", [](auto r, auto k, auto size, const Bytes& n) { return at(n, r * size + k); }},
+    {"noise", [](auto r, auto k, auto size, const Bytes& n) { return byte_at(n, r * size + k); }},
     {"64 records in turn",
-     [](auto r, auto k, auto size, const Bytes& n) { return at(n, r % 64 * size + k); }},
+     [](auto r, auto k, auto size, const Bytes& n) { return byte_at(n, r % 64 * size + k); }},
     {"1000 records in turn",
-     [](auto r, auto k, auto size, const Bytes& n) { return at(n, r % 1000 * size + k); }},
+     [](auto r, auto k, auto size, const Bytes& n) { return byte_at(n, r % 1000 * size + k); }},
     {"331 bytes in turn",
-     [](auto r, auto k, auto size, const Bytes& n) { return at(n, (r * size + k) % 331); }},
+     [](auto r, auto k, auto size, const Bytes& n) { return byte_at(n, (r * size + k) % 331); }},
     {"one of 300 records",
      [](auto r, auto k, auto size, const Bytes& n) {
-       return at(n, 2 * number(n, 7919 * r) % 300 * size + k);
+       return byte_at(n, 2 * number(n, 7919 * r) % 300 * size + k);
      }},
     {"a text",
      [](auto r, auto k, auto size, const Bytes&) {
@@ -88,7 +88,7 @@ constexpr Poor kPoor[] = {
     {"one of 256 strings",
      [](auto r, auto k, auto size, const Bytes& n) {
        const std::size_t i = r * size + k;
-       return at(n, number(n, 7919 * (i / 64)) * 64 + i % 64);
+       return byte_at(n, number(n, 7919 * (i / 64)) * 64 + i % 64);
      }},
     {"two records",
      [](auto r, auto, auto, const Bytes& n) {
@@ -105,12 +105,12 @@ constexpr Poor kPoor[] = {
      }},
     {"a few records of noise",
      [](auto r, auto k, auto size, const Bytes& n) {
-       return number(n, 7919 * r) < 8 ? at(n, r * size + k) : std::byte{0};
+       return number(n, 7919 * r) < 8 ? byte_at(n, r * size + k) : std::byte{0};
      }},
     {"noise with a few records of others",
      [](auto r, auto k, auto size, const Bytes& n) {
        const std::size_t from = number(n, 7919 * r) < 64 ? r * 5 / 8 : r;
-       return at(n, from * size + k);
+       return byte_at(n, from * size + k);
      }},
 };
 

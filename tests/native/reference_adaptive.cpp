@@ -11,9 +11,9 @@
 namespace gicodec::reference {
 namespace {
 
-class Sets {
+class AdaptiveSets {
  public:
-  Sets(const TextureDesc& desc, BitModels& models)
+  AdaptiveSets(const TextureDesc& desc, BitModels& models)
       : record_(desc.record),
         models_(models),
         axes_(std::min<unsigned>(3, record_.count)),
@@ -304,7 +304,7 @@ std::optional<std::vector<std::vector<std::byte>>> decode_adaptive(
   BitModels models(source);
   std::vector<std::vector<std::byte>> out;
   if (desc.model == Model::unordered) {
-    Sets sets(desc, models);
+    AdaptiveSets sets(desc, models);
     for (const AdaptiveBlock& block : blocks) {
       std::vector<Components> records;
       const auto n = static_cast<std::size_t>(std::ranges::count(block.exists, true));

@@ -6,10 +6,10 @@ namespace gicodec::reference {
 
 namespace {
 
-struct Place {
+struct RecordPlace {
   bool exists = false, known = false, changed = false;
   Components now, previous, residual;
-  explicit Place(std::size_t components)
+  explicit RecordPlace(std::size_t components)
       : now(components, 0), previous(components, 0), residual(components, 0) {}
 };
 
@@ -46,10 +46,10 @@ class Records {
 
   std::vector<std::byte> block(const AdaptiveBlock& in) {
     const std::size_t columns = desc_.block.x;
-    places_.assign(in.exists.size(), Place(count_));
+    places_.assign(in.exists.size(), RecordPlace(count_));
     Number n = 0, h = 1;
     for (std::size_t i = 0; i < places_.size(); ++i) {
-      Place& here = places_[i];
+      RecordPlace& here = places_[i];
       here.exists = in.exists[i];
       if (!here.exists) continue;
       if (!in.previous.empty())
@@ -117,7 +117,7 @@ class Records {
     }
     u_ = 8 * n / (static_cast<Number>(places_.size()) + 1);
     std::vector<Components> values;
-    for (const Place& place : places_) values.push_back(place.now);
+    for (const RecordPlace& place : places_) values.push_back(place.now);
     return packed(record_, values);
   }
 
@@ -152,7 +152,7 @@ class Records {
     return values[c] << (mantissa(c) ? values[static_cast<std::size_t>(exponent_)] : 0);
   }
 
-  void new_record(Place& here, Number h) {
+  void new_record(RecordPlace& here, Number h) {
     const Number f = column_ == 0 ? 1 : 0;
     const Components& before = column_ == 0 ? l1_.now : w_->now;
     const Components& other = !flat_ ? n_->now : column_ >= 2 ? ww_->now : l2_.now;
@@ -188,7 +188,7 @@ class Records {
     }
   }
 
-  void known_record(Place& here, Number h, Number n) {
+  void known_record(RecordPlace& here, Number h, Number n) {
     Number q = 1, r1 = 0, r2 = 0, k = 0, moved = 0;
     lead_ = -1;
     t_ = 0;
@@ -221,7 +221,7 @@ class Records {
     mask_ = moved;
   }
 
-  bool copy(Place& here, unsigned j) {
+  bool copy(RecordPlace& here, unsigned j) {
     const unsigned c = order_[j], b = bits(c);
     std::vector<Number> passed = {here.previous[c]};
     const auto is = [&](Number candidate, Number from, unsigned a) {
@@ -247,7 +247,7 @@ class Records {
     return false;
   }
 
-  Number difference(const Place& here, unsigned c) {
+  Number difference(const RecordPlace& here, unsigned c) {
     const unsigned b = bits(c);
     const SimilarRecord& similar = similar_[key(here.previous)];
     const Number p = here.previous[c], r = similar.residual[c], l = l1_.residual[c],
@@ -284,12 +284,12 @@ class Records {
     return y == 1 ? -magnitude - 1 : magnitude;
   }
 
-  std::array<Number, 4> predictions(unsigned c, const Place& here) const {
+  std::array<Number, 4> predictions(unsigned c, const RecordPlace& here) const {
     const Number g0 = a(c, here.previous);
     std::array<Number, 4> g = {g0, g0, g0, g0};
     if (!linear(c) && !code(c)) return g;
     Number s = 0, t = 0, m = 0;
-    const std::pair<const Place*, Number> around[] = {{w_, 2}, {n_, 2}, {nw_, 1}, {ne_, 1}};
+    const std::pair<const RecordPlace*, Number> around[] = {{w_, 2}, {n_, 2}, {nw_, 1}, {ne_, 1}};
     for (const auto& [place, weight] : around) {
       if (!place->known) continue;
       s += weight * a(c, place->now);
@@ -313,7 +313,7 @@ class Records {
     return g;
   }
 
-  void number(Place& here, unsigned c, unsigned j, Number k, Number r1, Number r2) {
+  void number(RecordPlace& here, unsigned c, unsigned j, Number k, Number r1, Number r2) {
     const unsigned b = bits(c);
     const std::array<Number, 4> g = predictions(c, here);
     const Number e = mantissa(c) ? here.now[static_cast<std::size_t>(exponent_)] : 0;
@@ -324,7 +324,7 @@ class Records {
       if (error_[c][i] < error_[c][best]) best = i;
     }
     const Number p = values[best];
-    const auto size = [c](const Place* place) { return std::abs(place->residual[c]); };
+    const auto size = [c](const RecordPlace* place) { return std::abs(place->residual[c]); };
     const Number energy = 2 * (size(w_) + size(n_)) + size(nw_) + size(ne_);
     const Number y = (w_->known ? 1 : 0) + (n_->known ? 2 : 0);
     const Number z = p == 0 ? 0 : 4 * width_of(p) + ((4 * p) >> (width_of(p) - 1)) % 4;
@@ -367,16 +367,16 @@ class Records {
   bool flat_;
   int exponent_ = -1;
   std::vector<unsigned> order_;
-  Place l1_, l2_, none_;
+  RecordPlace l1_, l2_, none_;
   std::vector<SimilarRecord> similar_;
   Number mask_ = 0, s_ = 1, t_ = 0;
   Components sum_, noise_;
   std::vector<std::array<Number, 4>> error_;
   Number u_ = 0;
 
-  std::vector<Place> places_;
+  std::vector<RecordPlace> places_;
   std::size_t column_ = 0;
-  const Place *w_ = nullptr, *n_ = nullptr, *nw_ = nullptr, *ne_ = nullptr, *ww_ = nullptr;
+  const RecordPlace *w_ = nullptr, *n_ = nullptr, *nw_ = nullptr, *ne_ = nullptr, *ww_ = nullptr;
   int lead_ = -1;
   Number lead_now_ = 0, lead_prediction_ = 0, lead_change_ = 0;
 };

@@ -9,7 +9,7 @@ namespace gicodec::reference {
 namespace {
 
 /// Distances of the places around a vertex.
-std::vector<std::array<int, 3>> around() {
+std::vector<std::array<int, 3>> vertices_around() {
   std::vector<std::array<int, 3>> all;
   const auto length = [](const auto& p) { return p[0] * p[0] + p[1] * p[1] + p[2] * p[2]; };
   for (int z = -3; z <= 3; ++z) {
@@ -27,7 +27,7 @@ std::vector<std::array<int, 3>> around() {
 class Vectors : Lights {
  public:
   Vectors(const TextureDesc& desc, const HeldBlocks& held, BitModels& models)
-      : Lights(desc.record, models), around_(around()) {
+      : Lights(desc.record, models), around_(vertices_around()) {
     for (const auto& [place, bytes] : held) {
       known_[place] = {scale_.vertex_of(bytes), {}, true, {}};
     }

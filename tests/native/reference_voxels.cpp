@@ -54,7 +54,7 @@ Three32 sum_of(const Three32& a, const Three32& b) {
 }
 Three32 halves_of(const Three32& v) { return {v[0] / 2, v[1] / 2, v[2] / 2}; }
 
-std::vector<Three32> around() {
+std::vector<Three32> voxels_around() {
   std::vector<Three32> all;
   for (int at = 0; at < 27; ++at) {
     if (at != 13) all.push_back({at % 3 - 1, at / 3 % 3 - 1, at / 9 - 1});
@@ -68,7 +68,7 @@ bool is_lit(const Codes& codes) { return codes.color != Three{} || codes.exponen
 class Voxels : Lights {
  public:
   Voxels(const TextureDesc& desc, const std::vector<HeldBrick>& held, BitModels& models)
-      : Lights(desc.record, models), n_side_(desc.block.y), around_(around()) {
+      : Lights(desc.record, models), n_side_(desc.block.y), around_(voxels_around()) {
     predictors_.dark_too = false;
     for (const HeldBrick& one : held) {
       const auto mask = std::span(one.presence).subspan(8);

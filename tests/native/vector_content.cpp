@@ -10,6 +10,11 @@
 #include <cmath>
 
 namespace gicodec::test {
+
+double number(Random& random, double low, double high) {
+  return low + (high - low) * static_cast<double>(random() >> 11) / 9007199254740992.0;
+}
+
 namespace {
 
 using Vector = std::array<double, 3>;
@@ -19,9 +24,6 @@ struct Ray {
   Vector direction, light;
 };
 
-double number(Random& random, double low, double high) {
-  return low + (high - low) * static_cast<double>(random() >> 11) / 9007199254740992.0;
-}
 Vector any_direction(Random& random) {
   const double z = number(random, -1, 1), turn = number(random, 0, 6.2831853);
   const double r = std::sqrt(1 - z * z);

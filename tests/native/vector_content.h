@@ -5,6 +5,9 @@
 
 namespace gicodec::test {
 
+/// Evenly in [low, high).
+[[nodiscard]] double number(Random& random, double low, double high);
+
 /// Light of a few lamps with walls in between, which are zero; sums of light from the same
 /// directions for all hemispheres, as native expects them; values at the edges of what there is;
 /// any bytes.

@@ -24,10 +24,6 @@ struct Face {
 using Faces = std::array<Face, kVoxelDirections>;
 using Level = std::map<Place, Faces>;  ///< of voxels
 
-double number(Random& random, double low, double high) {
-  return low + (high - low) * static_cast<double>(random() >> 11) / 9007199254740992.0;
-}
-
 /// A wavy floor, seen from above and from one side; in part of it the light stays as it is.
 Level surface(std::uint32_t side, unsigned frame, std::uint64_t seed) {
   Random random(seed);

@@ -15,7 +15,7 @@ using namespace test;
 constexpr std::uint32_t kMaxClients = 64;
 constexpr int kAddresses = 4, kPerAddress = 12;
 
-enum class Kind : std::uint8_t {
+enum class AttackKind : std::uint8_t {
   own_flood,  ///< packets of its own, everything, as fast as it can
   half_open,  ///< connects and says nothing
   resyncs,    ///< claims to have lost everything
@@ -28,7 +28,7 @@ enum class Kind : std::uint8_t {
 constexpr int kKinds = 8;
 
 struct Hostile {
-  Kind kind{};
+  AttackKind kind{};
   int address = 0;
   ConnectionId connection = 0;  ///< 0: not connected
   double again = 0;             ///< when it connects again
@@ -47,7 +47,7 @@ class Attack : public PathToServer {
   void attack() {
     for (std::uint32_t i = 0; i < kMaxClients; ++i) {
       Hostile& one = hostile_.emplace_back();
-      one.kind = static_cast<Kind>(i % kKinds);
+      one.kind = static_cast<AttackKind>(i % kKinds);
       one.address = static_cast<int>(i / kKinds) % kAddresses;
       flow_of_[&one] = add_flow(0.01);
     }
@@ -105,12 +105,12 @@ class Attack : public PathToServer {
     one.welcome = false;
     one.sync = 1;
     one.update_sync = one.number = 0;
-    if (one.kind == Kind::half_open) return;
-    if (one.kind == Kind::replays && !one.said.empty()) {
+    if (one.kind == AttackKind::half_open) return;
+    if (one.kind == AttackKind::replays && !one.said.empty()) {
       for (const Message& message : one.said) server().receive(one.connection, message, now());
       return;
     }
-    const bool own = one.kind == Kind::own_flood || one.kind == Kind::resyncs;
+    const bool own = one.kind == AttackKind::own_flood || one.kind == AttackKind::resyncs;
     say(one, Hello{one.sync, {}, own ? Delivery::unicast : Delivery::shared});
     say(one, Subscribe{1, 0, 0, BlockMask(kBlocks, 1)});
   }
@@ -141,23 +141,24 @@ class Attack : public PathToServer {
       if (const auto* update = read.ok() ? std::get_if<UpdateMessage>(&*read) : nullptr) {
         one.update_sync = update->sync;
         one.number = update->number;
-        if (one.kind == Kind::own_flood || one.kind == Kind::flips || one.kind == Kind::resyncs) {
+        if (one.kind == AttackKind::own_flood || one.kind == AttackKind::flips ||
+            one.kind == AttackKind::resyncs) {
           say(one, Acknowledge{one.update_sync, one.number});
         }
-        if (one.kind == Kind::flips) flip(one);
+        if (one.kind == AttackKind::flips) flip(one);
       }
     }
     const auto every = [&](int ticks) { return one.turn % ticks == 0; };
-    if (one.kind == Kind::resyncs && every(50)) say(one, Resync{++one.sync, 1, {}});
-    if (one.kind == Kind::garbage && every(10)) {
+    if (one.kind == AttackKind::resyncs && every(50)) say(one, Resync{++one.sync, 1, {}});
+    if (one.kind == AttackKind::garbage && every(10)) {
       Message garbage(pick(random_, 1, 2000));
       for (auto& byte : garbage) byte = static_cast<std::byte>(random_());
       server().receive(one.connection, garbage, now());
     }
-    if (one.kind == Kind::replays && every(20) && !one.said.empty()) {
+    if (one.kind == AttackKind::replays && every(20) && !one.said.empty()) {
       server().receive(one.connection, one.said[one.turn / 20 % one.said.size()], now());
     }
-    if (one.kind == Kind::late && one.number > 0 && chance(random_, 100)) {
+    if (one.kind == AttackKind::late && one.number > 0 && chance(random_, 100)) {
       say(one, Acknowledge{one.update_sync, one.number});
     }
   }

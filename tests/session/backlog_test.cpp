@@ -13,14 +13,14 @@ namespace {
 
 using namespace test;
 
-constexpr Grid kGrid{32, 16, 4};
-constexpr std::uint32_t kBlocks = 2048, kBudget = 32;
+constexpr Grid kBacklogGrid{32, 16, 4};
+constexpr std::uint32_t kBacklogBlocks = 2048, kBacklogBudget = 32;
 
 /// One texture whose records say when they were written.
 struct Written {
   Written() {
     volume.kind = kKindTextures;
-    volume.groups = {{{test::texture("written", Format::R32_UINT, 1, kGrid)}}};
+    volume.groups = {{{test::texture("written", Format::R32_UINT, 1, kBacklogGrid)}}};
     texture.assign(texture_bytes(volume.groups[0].textures[0].desc), std::byte{0});
   }
   void write(std::uint32_t block, std::uint32_t update) {
@@ -42,10 +42,10 @@ struct Sent {
 class Backlog : public testing::Test {
  protected:
   void SetUp() override {
-    ASSERT_TRUE(distributor_.add_volume(written_.volume, {kGrid}).ok());
-    client_ = *distributor_.connect(Delivery::unicast, {kBudget, 0});
-    ASSERT_EQ(distributor_.set_visible(client_, 0, BlockMask(kBlocks, 1)), Status::ok);
-    for (std::uint32_t block = 0; block < kBlocks; ++block) written_.write(block, 1);
+    ASSERT_TRUE(distributor_.add_volume(written_.volume, {kBacklogGrid}).ok());
+    client_ = *distributor_.connect(Delivery::unicast, {kBacklogBudget, 0});
+    ASSERT_EQ(distributor_.set_visible(client_, 0, BlockMask(kBacklogBlocks, 1)), Status::ok);
+    for (std::uint32_t block = 0; block < kBacklogBlocks; ++block) written_.write(block, 1);
   }
 
   Sent update() {
@@ -62,29 +62,29 @@ class Backlog : public testing::Test {
 };
 
 TEST_F(Backlog, IsSentInItsOrderAndLookedAtSeldom) {
-  std::vector<std::uint32_t> times(kBlocks);
+  std::vector<std::uint32_t> times(kBacklogBlocks);
   std::uint64_t examined = 0;
   std::uint32_t changed_first = 0, updates = 0;
-  for (std::uint32_t seen = 0; seen < kBlocks; ++updates) {
-    ASSERT_LT(updates, 4 * kBlocks / kBudget);
+  for (std::uint32_t seen = 0; seen < kBacklogBlocks; ++updates) {
+    ASSERT_LT(updates, 4 * kBacklogBlocks / kBacklogBudget);
     // Of each four blocks that are sent one comes again.
-    for (std::uint32_t i = 0; i < kBudget / 4; ++i) {
-      const std::uint32_t block = (updates * kBudget + i * 37) % kBlocks;
+    for (std::uint32_t i = 0; i < kBacklogBudget / 4; ++i) {
+      const std::uint32_t block = (updates * kBacklogBudget + i * 37) % kBacklogBlocks;
       written_.write(block, updates + 2);
     }
     const Sent sent = update();
     examined += sent.examined;
-    EXPECT_LE(sent.blocks.size(), kBudget);
+    EXPECT_LE(sent.blocks.size(), kBacklogBudget);
     for (const std::uint32_t block : sent.blocks) {
       if (times[block]++ == 0)
         ++seen;
-      else if (seen < kBlocks)
+      else if (seen < kBacklogBlocks)
         ++changed_first;
     }
   }
-  EXPECT_LE(updates, kBlocks / kBudget + 8) << "what changed later came first";
-  EXPECT_LT(changed_first, kBudget * 8);
-  EXPECT_LT(examined, updates * std::uint64_t{kBlocks} * 2 / 3);
+  EXPECT_LE(updates, kBacklogBlocks / kBacklogBudget + 8) << "what changed later came first";
+  EXPECT_LT(changed_first, kBacklogBudget * 8);
+  EXPECT_LT(examined, updates * std::uint64_t{kBacklogBlocks} * 2 / 3);
   for (int i = 0; i < 40; ++i) update();
   EXPECT_EQ(distributor_.state(client_)->pending, 0U);
 }
@@ -92,9 +92,9 @@ TEST_F(Backlog, IsSentInItsOrderAndLookedAtSeldom) {
 TEST_F(Backlog, IsOfWhatIsSeenAndActiveNow) {
   update();
   // The later half is not seen any more, and every other block of the first not active.
-  BlockMask visible(kBlocks, 0), active(kBlocks, 0);
-  for (std::uint32_t block = 0; block < kBlocks; ++block) {
-    visible[block] = block < kBlocks / 2 ? 1 : 0;
+  BlockMask visible(kBacklogBlocks, 0), active(kBacklogBlocks, 0);
+  for (std::uint32_t block = 0; block < kBacklogBlocks; ++block) {
+    visible[block] = block < kBacklogBlocks / 2 ? 1 : 0;
     active[block] = block % 2 == 0 ? 1 : 0;
   }
   ASSERT_EQ(distributor_.set_visible(client_, 0, visible), Status::ok);
@@ -102,26 +102,26 @@ TEST_F(Backlog, IsOfWhatIsSeenAndActiveNow) {
   std::size_t sent = 0;
   for (int i = 0; i < 40; ++i) {
     for (const std::uint32_t block : update().blocks) {
-      EXPECT_LT(block, kBlocks / 2);
+      EXPECT_LT(block, kBacklogBlocks / 2);
       EXPECT_EQ(block % 2, 0U);
       ++sent;
     }
   }
-  EXPECT_GT(sent, kBlocks / 4 - kBudget);
-  EXPECT_LE(sent, kBlocks / 4);
+  EXPECT_GT(sent, kBacklogBlocks / 4 - kBacklogBudget);
+  EXPECT_LE(sent, kBacklogBlocks / 4);
 }
 
 TEST_F(Backlog, GoesWithItsVolume) {
   update();
-  ASSERT_TRUE(distributor_.add_volume(written_.volume, {kGrid}).ok());
+  ASSERT_TRUE(distributor_.add_volume(written_.volume, {kBacklogGrid}).ok());
   ASSERT_EQ(distributor_.remove_volume(0), Status::ok);
   ASSERT_EQ(distributor_.publish(1, 0, {written_.texture}), Status::ok);
-  ASSERT_EQ(distributor_.set_visible(client_, 1, BlockMask(kBlocks, 1)), Status::ok);
+  ASSERT_EQ(distributor_.set_visible(client_, 1, BlockMask(kBacklogBlocks, 1)), Status::ok);
   for (int i = 0; i < 3; ++i) {
     ASSERT_EQ(distributor_.update(), Status::ok);
     ASSERT_EQ(distributor_.packets(client_).size(), 1U);
     EXPECT_EQ(distributor_.packets(client_)[0].stream.volume, 1U);
-    EXPECT_EQ(distributor_.packets(client_)[0].blocks, kBudget);
+    EXPECT_EQ(distributor_.packets(client_)[0].blocks, kBacklogBudget);
   }
 }
 

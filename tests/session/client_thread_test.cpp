@@ -19,12 +19,12 @@ namespace {
 
 using namespace test;
 
-constexpr Grid kGrid{3, 2, 3};
+constexpr Grid kThreadGrid{3, 2, 3};
 
 /// Every texel of both textures says the number of the update.
 void publish(Server& server, std::uint16_t volume, std::uint32_t number) {
   for (std::uint8_t t = 0; t < 2; ++t) {
-    const TextureDesc desc = t == 0 ? ddgi_irradiance(kGrid) : ddgi_visibility(kGrid);
+    const TextureDesc desc = t == 0 ? ddgi_irradiance(kThreadGrid) : ddgi_visibility(kThreadGrid);
     std::vector<std::uint32_t> texels(static_cast<std::size_t>(texture_bytes(desc) / 4), number);
     ASSERT_EQ(server.publish(volume, t, {std::as_bytes(std::span(texels))}), Status::ok);
   }
@@ -38,8 +38,8 @@ std::optional<Server> make_server(std::uint16_t& volume) {
   auto server = Server::create(options);
   EXPECT_TRUE(server.ok());
   const auto probes =
-      probes_of({{"color", ddgi_irradiance(kGrid)}, {"vis", ddgi_visibility(kGrid)}});
-  const auto id = server->add_volume("volume", probes, {kGrid});
+      probes_of({{"color", ddgi_irradiance(kThreadGrid)}, {"vis", ddgi_visibility(kThreadGrid)}});
+  const auto id = server->add_volume("volume", probes, {kThreadGrid});
   EXPECT_TRUE(id.ok());
   volume = *id;
   return *std::move(server);
@@ -101,7 +101,9 @@ TEST(ClientThread, HandsOverWholeFramesWhileTheNextAreDecoded) {
   ASSERT_TRUE(hello.ok());
   server->receive(*connection, *hello, 0);
   Message all;
-  ASSERT_EQ(write_message(Subscribe{1, volume, 0, BlockMask(kGrid.x * kGrid.y * kGrid.z, 1)}, all),
+  ASSERT_EQ(write_message(Subscribe{1, volume, 0,
+                                    BlockMask(kThreadGrid.x * kThreadGrid.y * kThreadGrid.z, 1)},
+                          all),
             Status::ok);
   server->receive(*connection, all, 0);
   for (std::uint32_t update = 1; update <= kUpdates; ++update) {
@@ -127,7 +129,7 @@ TEST(ClientThread, HandsOverWholeFramesWhileTheNextAreDecoded) {
 TEST(ClientThread, SaysItsWishesToEverySession) {
   std::uint16_t volume = 0;
   auto server = make_server(volume);
-  BlockMask some(kGrid.x * kGrid.y * kGrid.z);
+  BlockMask some(kThreadGrid.x * kThreadGrid.y * kThreadGrid.z);
   some[1] = 1;
   auto client = *Client::create();
   ASSERT_EQ(client.set_viewpoint({{4, 5, 6}}), Status::ok);

@@ -36,9 +36,9 @@ struct Receiver {
   std::map<StreamId, Chain> chains;
 };
 
-class World {
+class DistributorWorld {
  public:
-  World(Random& random, const char* backend) : random_(random), volume_(random) {
+  DistributorWorld(Random& random, const char* backend) : random_(random), volume_(random) {
     options_.backend = backend;
     options_.threads = pick(random, 1, 3);
     options_.settings.isa = any_isa(random);
@@ -401,10 +401,10 @@ class World {
   std::vector<Contents> past_;  ///< of all updates that differ
 };
 
-void run_world(std::uint64_t seed, const char* backend) {
+void run_distributor_world(std::uint64_t seed, const char* backend) {
   SCOPED_TRACE(seed);
   Random random(seed);
-  World world(random, backend);
+  DistributorWorld world(random, backend);
   const auto clients = pick(random, 1, 4);
   for (std::uint32_t i = 0; i < clients; ++i) {
     world.connect(chance(random, 3) ? Delivery::shared : Delivery::unicast);
@@ -417,19 +417,19 @@ void run_world(std::uint64_t seed, const char* backend) {
 }
 
 RC_GTEST_PROP(Distributor, ClientsHoldWhatTheServerThinks, (std::uint64_t seed)) {
-  run_world(seed, "zstd");
+  run_distributor_world(seed, "zstd");
   RC_ASSERT(!testing::Test::HasFailure());
 }
 
 RC_GTEST_PROP(Distributor, WithTheNativeCodec, (std::uint64_t seed)) {
-  run_world(seed, "native");
+  run_distributor_world(seed, "native");
   RC_ASSERT(!testing::Test::HasFailure());
 }
 
 /// A region's streams keep what an inactive block held, while its current contents name others; and
 /// what was published names others than what came, as it was not its turn yet.
 TEST(Distributor, WhatBlocksNameIsWhatWasSent) {
-  for (const std::uint64_t seed : {9265, 11690}) run_world(seed, "zstd");
+  for (const std::uint64_t seed : {9265, 11690}) run_distributor_world(seed, "zstd");
 }
 
 }  // namespace

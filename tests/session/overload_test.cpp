@@ -10,7 +10,7 @@ namespace {
 
 using namespace test;
 
-constexpr double kInterval = PathToServer::kInterval;
+constexpr double kUpdateInterval = PathToServer::kInterval;
 
 void print(const std::string& what, const Measured& m) {
   std::printf("%-20s %6.2f MB/s  latency %3.0f, 95 %% %3.0f ms  fewest %.2f  updates %.2f\n",
@@ -31,7 +31,7 @@ TEST_P(Overload, DegradesGracefully) {
     const Measured m = path.measure(6);
     print(std::to_string(load) + " x the capacity", m);
     EXPECT_GE(m.goodput, 0.8 * rate);
-    EXPECT_LT(m.late, 3 * kInterval + 2 * delay);
+    EXPECT_LT(m.late, 3 * kUpdateInterval + 2 * delay);
     EXPECT_GT(m.fairness, 0.8);
     EXPECT_EQ(m.dropped + m.gaps, 0U);
   }
@@ -57,7 +57,7 @@ TEST(OverloadTest, LongWaysAreFilled) {
       const Measured m = path.measure(12);
       print("10 Mbps", m);
       EXPECT_GE(m.goodput, 0.8 * kRate);
-      EXPECT_LT(m.late, 3 * kInterval + 2 * delay);
+      EXPECT_LT(m.late, 3 * kUpdateInterval + 2 * delay);
     }
   }
 }
@@ -96,7 +96,7 @@ TEST(OverloadTest, SlowLinksAreFilled) {
       const Measured m = path.measured(8, 2 * i, 2);
       print(std::to_string(static_cast<int>(links[i])) + " Mbps", m);
       EXPECT_GE(m.goodput, 0.8 * 2 * links[i] * 125000);
-      EXPECT_LT(m.late, 3 * kInterval + 2 * kDelay);
+      EXPECT_LT(m.late, 3 * kUpdateInterval + 2 * kDelay);
       EXPECT_EQ(m.dropped + m.gaps + m.failed_proofs, 0U);
     }
   }
@@ -115,7 +115,7 @@ TEST(OverloadTest, JoiningClientsAreServed) {
     path.run(3);
     const Measured joining = path.measured(3, 2 * fit, fit);
     print("joining", joining);
-    EXPECT_LT(joining.late, 3 * kInterval + 0.04);
+    EXPECT_LT(joining.late, 3 * kUpdateInterval + 0.04);
     const Measured m = path.measure(6);
     print("three seconds later", m);
     EXPECT_GT(m.fairness, 0.7);
@@ -135,7 +135,7 @@ TEST(OverloadTest, FollowsAPathThatGetsSlower) {
     const Measured slow = path.measure(6);
     print("a tenth", slow);
     EXPECT_GE(slow.goodput, 0.8 * rate / 10);
-    EXPECT_LT(slow.late, 3 * kInterval + 0.04);
+    EXPECT_LT(slow.late, 3 * kUpdateInterval + 0.04);
     path.set_rate(rate);
     path.run(8);
     const Measured fast = path.measure(6);

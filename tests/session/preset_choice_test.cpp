@@ -15,7 +15,7 @@
 namespace gicodec {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 constexpr int kMany = 100;  ///< updates
 constexpr ByPreset kUsual{1, 1, 1}, kCoded{0, 0.01, 0};
 
@@ -46,7 +46,7 @@ TEST(PresetChoice, LinksGetWhatDeliversFirst) {
   EXPECT_EQ(settled(0.5 * kMbps), kStrong);
   EXPECT_EQ(settled(20 * kMbps), kFast);
   EXPECT_EQ(settled(1000 * kMbps), kTurbo);
-  EXPECT_EQ(settled(kInfinity), kTurbo);
+  EXPECT_EQ(settled(kUnlimited), kTurbo);
   EXPECT_EQ(settled(0), kFast);  // Not known.
 }
 
@@ -104,13 +104,13 @@ TEST(PresetChoice, OscillationChangesNothing) {
 
 TEST(PresetChoice, AChangeTakesSeveralUpdates) {
   PresetChoice choice;
-  for (int i = 0; i < 7; ++i) choice.choose(colour(kFast), kInfinity, kUsual, kStrong);
+  for (int i = 0; i < 7; ++i) choice.choose(colour(kFast), kUnlimited, kUsual, kStrong);
   choice.choose(colour(kFast), 2.5e6, kUsual, kStrong);  // Begins anew.
-  for (int i = 0; i < 7; ++i) choice.choose(colour(kFast), kInfinity, kUsual, kStrong);
+  for (int i = 0; i < 7; ++i) choice.choose(colour(kFast), kUnlimited, kUsual, kStrong);
   EXPECT_EQ(choice.preset(), kFast);
-  choice.choose({}, kInfinity, kUsual, kStrong);  // Nothing was sent.
+  choice.choose({}, kUnlimited, kUsual, kStrong);  // Nothing was sent.
   EXPECT_EQ(choice.preset(), kFast);
-  choice.choose(colour(kFast), kInfinity, kUsual, kStrong);
+  choice.choose(colour(kFast), kUnlimited, kUsual, kStrong);
   EXPECT_EQ(choice.preset(), kTurbo);
 }
 
@@ -204,7 +204,7 @@ TEST(LowThroughput, IsThatOfATenthOfTheClients) {
 /// From three on a client that says anything leaves the choice among the others.
 TEST(LowThroughput, OneLiarChangesNothing) {
   for (const std::size_t others : {2, 3, 10, 50}) {
-    for (const double lie : {1e-3, 50.0, kInfinity}) {
+    for (const double lie : {1e-3, 50.0, kUnlimited}) {
       std::vector<double> values(others, 50);
       values.push_back(lie);
       EXPECT_EQ(low(values), 50);
@@ -237,7 +237,7 @@ TEST(Throughput, IsThatOfTheLink) {
   CongestionControl control(1 << 20);
   control.answered(kPath, 0);
   control.acknowledged({.made = 0, .bytes = 5000}, kPath, kInterval, 1e6);
-  EXPECT_EQ(control.throughput(), kInfinity);
+  EXPECT_EQ(control.throughput(), kUnlimited);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace {
 
 using namespace test;
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kInfinite = std::numeric_limits<float>::infinity();
 
 TEST_F(ServerTest, MisuseIsNamed) {
   make();
@@ -33,7 +33,7 @@ TEST_F(ServerTest, MisuseIsNamed) {
   EXPECT_EQ(server_->set_active(0, mask, 1), Status::unknown_group);
   EXPECT_EQ(server_->set_active(0, longer), Status::mask_mismatch);
   EXPECT_EQ(server_->connect(std::nan("")).status(), Status::invalid_time);
-  EXPECT_EQ(server_->update(kInfinity, 0), Status::invalid_time);
+  EXPECT_EQ(server_->update(kInfinite, 0), Status::invalid_time);
   EXPECT_EQ(server_->update(0, std::nan("")), Status::invalid_time);
   EXPECT_EQ(server_->updates(), 0U);
 
@@ -71,7 +71,7 @@ TEST_F(ServerTest, VolumesThatCannotBeAreNamed) {
   EXPECT_EQ(add({{.texture = "color", .threshold = 1, .max_error = 1}}), Status::invalid_bound);
   EXPECT_EQ(add({}, {{4, 2, 2}}), Status::invalid_geometry);
   EXPECT_EQ(add({}, {kGrid, {0, 0, 0}, {1, 0, 1}}), Status::invalid_geometry);
-  EXPECT_EQ(add({}, {kGrid, {kInfinity, 0, 0}}), Status::invalid_geometry);
+  EXPECT_EQ(add({}, {kGrid, {kInfinite, 0, 0}}), Status::invalid_geometry);
   EXPECT_EQ(Server::create({.backend = "none"}).status(), Status::unknown_backend);
   EXPECT_EQ(Server::create({.threads = 0}).status(), Status::invalid_settings);
   EXPECT_EQ(Server::create({.region = {0, 1, 1}}).status(), Status::invalid_argument);

@@ -83,9 +83,9 @@ struct Player {
   std::vector<std::vector<BlockMask>> visible;  ///< by volume and group
 };
 
-class World {
+class SimulatedWorld {
  public:
-  World(Random& random, const char* backend) : random_(random) {
+  SimulatedWorld(Random& random, const char* backend) : random_(random) {
     ServerOptions options;
     options.backend = backend;
     options.threads = pick(random, 1, 2);
@@ -352,10 +352,10 @@ class World {
 struct Compared {
   std::uint64_t proofs = 0, recorded = 0;
 };
-Compared run_world(std::uint64_t seed, const char* backend) {
+Compared run_simulated_world(std::uint64_t seed, const char* backend) {
   SCOPED_TRACE(seed);
   Random random(seed);
-  World world(random, backend);
+  SimulatedWorld world(random, backend);
   for (std::uint32_t i = 0, players = pick(random, 1, 4); i < players; ++i) world.join();
   const int steps = static_cast<int>(pick(random, 5, 40));
   for (int step = 0; step < steps && !testing::Test::HasFailure(); ++step) {
@@ -367,12 +367,12 @@ Compared run_world(std::uint64_t seed, const char* backend) {
 }
 
 RC_GTEST_PROP(SessionSimulation, StatesAgreeOverAnyNetwork, (std::uint64_t seed)) {
-  run_world(seed, "raw");
+  run_simulated_world(seed, "raw");
   RC_ASSERT(!testing::Test::HasFailure());
 }
 
 RC_GTEST_PROP(SessionSimulation, WithTheNativeCodec, (std::uint64_t seed)) {
-  run_world(seed, "native");
+  run_simulated_world(seed, "native");
   RC_ASSERT(!testing::Test::HasFailure());
 }
 
@@ -383,7 +383,7 @@ TEST_P(ManySchedules, StatesAgree) {
   const std::uint64_t schedules = everything() ? 500 : 100;
   Compared all;
   for (std::uint64_t i = 0; i < schedules && !testing::Test::HasFailure(); ++i) {
-    const Compared one = run_world(GetParam() * schedules + i, "raw");
+    const Compared one = run_simulated_world(GetParam() * schedules + i, "raw");
     all.proofs += one.proofs;
     all.recorded += one.recorded;
   }

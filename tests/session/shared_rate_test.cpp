@@ -17,8 +17,8 @@ namespace {
 
 using namespace test;
 
-constexpr Grid kGrid{8, 4, 8};
-constexpr std::uint32_t kBlocks = 256;
+constexpr Grid kSharedGrid{8, 4, 8};
+constexpr std::uint32_t kSharedBlocks = 256;
 constexpr std::size_t kStreams = 16;
 
 /// Noise in a volume of 16 regions.
@@ -31,7 +31,8 @@ class SharedRates : public testing::Test {
     auto distributor = Distributor::create(options);
     ASSERT_TRUE(distributor.ok());
     distributor_.emplace(*std::move(distributor));
-    ASSERT_TRUE(distributor_->add_volume(probes_of({{"color", texture_.desc()}}), {kGrid}).ok());
+    ASSERT_TRUE(
+        distributor_->add_volume(probes_of({{"color", texture_.desc()}}), {kSharedGrid}).ok());
   }
 
   struct Viewer {
@@ -43,7 +44,7 @@ class SharedRates : public testing::Test {
   Viewer join(std::uint64_t bytes) {
     const auto id = distributor_->connect(Delivery::shared, {0, bytes});
     EXPECT_TRUE(id.ok());
-    EXPECT_EQ(distributor_->set_visible(*id, 0, BlockMask(kBlocks, 1)), Status::ok);
+    EXPECT_EQ(distributor_->set_visible(*id, 0, BlockMask(kSharedBlocks, 1)), Status::ok);
     return {*id};
   }
 
@@ -72,7 +73,7 @@ class SharedRates : public testing::Test {
   }
 
   Random random_{3};
-  Texture texture_{ddgi_irradiance(kGrid)};
+  Texture texture_{ddgi_irradiance(kSharedGrid)};
   std::optional<Distributor> distributor_;
 };
 
@@ -179,7 +180,7 @@ TEST_F(SharedRates, WhoWasAwayGoesOn) {
   }
   EXPECT_EQ(keyframes + catch_ups, 30 * kStreams);
   EXPECT_EQ(catch_ups, 12 * kStreams);
-  EXPECT_LT(most, 24 * kBlocks * block_bytes(texture_.desc()));
+  EXPECT_LT(most, 24 * kSharedBlocks * block_bytes(texture_.desc()));
 }
 
 /// Nobody takes part: nothing is made.

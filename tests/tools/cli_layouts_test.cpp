@@ -15,7 +15,7 @@
 namespace gicodec::tools {
 namespace {
 
-constexpr unsigned kFrames = 2;
+constexpr unsigned kLayoutFrames = 2;
 /// Attributes that a kind of file keeps.
 constexpr const char* kNote = "note";
 
@@ -62,7 +62,7 @@ class CliLayouts : public testing::TestWithParam<const EngineLayout*> {
   void write(const std::string& folder, const std::string& ending) {
     std::filesystem::create_directories(program_.path(folder));
     for (const NamedTexture& texture : textures_) {
-      for (unsigned frame = 0; frame < kFrames; ++frame) {
+      for (unsigned frame = 0; frame < kLayoutFrames; ++frame) {
         DumpInfo info = make_info(texture.desc);
         set_attribute(info.attributes, {kNote, "string", fmt::format("of frame {}", frame)});
         write_dump(
@@ -82,7 +82,7 @@ class CliLayouts : public testing::TestWithParam<const EngineLayout*> {
   }
   void expect_texels(const std::string& folder, const std::string& ending, bool noted) {
     for (const NamedTexture& texture : textures_) {
-      for (unsigned frame = 0; frame < kFrames; ++frame) {
+      for (unsigned frame = 0; frame < kLayoutFrames; ++frame) {
         const Dump dump = read_dump(
             program_.path(fmt::format("{}/{}.{:04}.{}", folder, texture.name, frame, ending)),
             hints_of(texture.desc));
@@ -147,7 +147,7 @@ TEST_P(CliLayouts, ComeBackAsEveryKindOfFile) {
     });
     if (lacking != textures_.end()) continue;
     const std::string out = "out-" + ending, file = name_ + "-" + ending + ".gic";
-    const std::string all = fmt::format("{0} of {0} files", kFrames * textures_.size());
+    const std::string all = fmt::format("{0} of {0} files", kLayoutFrames * textures_.size());
     write(ending, ending);
     program_.succeed(command({"encode", "-o", file, ending}));
     expect_part(program_.succeed({"verify", file, ending}).out, all);
@@ -170,8 +170,8 @@ TEST_P(CliLayouts, ComeBackAsEveryKindOfFile) {
     EXPECT_EQ(program_.run(command({"compare", ending, out})).exit, 1);
     const Outcome verified = program_.run({"verify", file, out});
     EXPECT_EQ(verified.exit, 1);
-    expect_part(verified.out, fmt::format("{} of {} files", kFrames * textures_.size() - 1,
-                                          kFrames * textures_.size()));
+    expect_part(verified.out, fmt::format("{} of {} files", kLayoutFrames * textures_.size() - 1,
+                                          kLayoutFrames * textures_.size()));
   }
   program_.succeed(
       {"preview", name_ + "-raw.gic", "--texture", textures_.front().name, "-o", "a.png"});

@@ -24,7 +24,7 @@ Vec3 any_place(const VectorField& field, ddgi::Random& random) {
   return {one(first.x, last.x), one(first.y, last.y), one(first.z, last.z)};
 }
 
-void expect_near(Vec3 value, Vec3 expected, float error) {
+void expect_within(Vec3 value, Vec3 expected, float error) {
   EXPECT_NEAR(value.x, expected.x, error);
   EXPECT_NEAR(value.y, expected.y, error);
   EXPECT_NEAR(value.z, expected.z, error);
@@ -52,8 +52,8 @@ TEST(VectorField, WeighsHemispheresByTheNormal) {
     const Vec3 expected = v[n.x >= 0 ? 0 : 1].along(n) * (n.x * n.x) +
                           v[n.y >= 0 ? 2 : 3].along(n) * (n.y * n.y) +
                           v[n.z >= 0 ? 4 : 5].along(n) * (n.z * n.z);
-    expect_near(field.irradiance(place_of(field, vertex), n, Interpolation::trilinear),
-                max(expected, {}), 1e-5F);
+    expect_within(field.irradiance(place_of(field, vertex), n, Interpolation::trilinear),
+                  max(expected, {}), 1e-5F);
   }
 }
 
@@ -71,7 +71,7 @@ TEST(VectorField, IsConstantWhereVerticesAre) {
       const Vec3 place = any_place(field, random);
       for (std::size_t h = 0; h < kHemispheres; ++h) {
         const Vec3 value = field.irradiance(place, axis_of(h), interpolation);
-        expect_near(value / 100, Vec3{0.25F, 3, 100} / 100, 1e-5F);
+        expect_within(value / 100, Vec3{0.25F, 3, 100} / 100, 1e-5F);
       }
     }
   }
@@ -101,8 +101,8 @@ TEST(VectorField, FollowsWhatIsLinear) {
       const Vec3 p{along(0, grid.x), along(1, grid.y), along(2, grid.z)};
       const float expected = std::max(value(p), 0.0F);
       if (value(p) < 0.1F) continue;
-      expect_near(field.irradiance(p, axis_of(static_cast<std::size_t>(i) % 6), interpolation),
-                  Vec3{1, 0.5F, 2} * expected, 1e-4F);
+      expect_within(field.irradiance(p, axis_of(static_cast<std::size_t>(i) % 6), interpolation),
+                    Vec3{1, 0.5F, 2} * expected, 1e-4F);
     }
   }
 }
@@ -138,7 +138,7 @@ TEST(VectorField, WhatIsNotKnownHasNoWeight) {
       const Vec3 value = field.irradiance(place, axis_of(h), interpolation);
       if (value == Vec3{}) continue;
       ++lit;
-      expect_near(value, max(field.vertices[vertex][h].along(axis_of(h)), {}), 1e-5F);
+      expect_within(value, max(field.vertices[vertex][h].along(axis_of(h)), {}), 1e-5F);
     }
     EXPECT_GT(lit, 0U);
     EXPECT_LT(lit, 500U);
@@ -177,7 +177,7 @@ TEST(VectorField, TheLeastWeightsAreNoneOrCount) {
         for (const Vec3 place : {Vec3{tiny, tiny, tiny}, Vec3{tiny, tiny, 1}, Vec3{tiny, 1, 1},
                                  Vec3{1 + tiny, 1 + tiny, 1 + tiny}, Vec3{1 + tiny, 1 + tiny, 2}}) {
           const Vec3 value = field.irradiance(place, {0, 1, 0}, interpolation);
-          if (value != Vec3{}) expect_near(value, {1, 2, 3}, 1e-4F);
+          if (value != Vec3{}) expect_within(value, {1, 2, 3}, 1e-4F);
         }
       }
     }

@@ -24,7 +24,7 @@ Vectors random_light(std::size_t hemisphere, ddgi::Random& random) {
   return out;
 }
 
-void expect_near(Vec3 value, Vec3 expected, float share) {
+void expect_share(Vec3 value, Vec3 expected, float share) {
   EXPECT_NEAR(value.x, expected.x, share * std::abs(expected.x));
   EXPECT_NEAR(value.y, expected.y, share * std::abs(expected.y));
   EXPECT_NEAR(value.z, expected.z, share * std::abs(expected.z));
@@ -52,8 +52,8 @@ TEST(Compression, LosesNothingAlongTheAxis) {
     const Vectors vectors = random_light(h, random);
     const DirectedColor compressed = compress(vectors, h);
     EXPECT_NEAR(length(compressed.direction), 1, 1e-6);
-    expect_near(compressed.color * dot(compressed.direction, axis), vectors.along(axis), 1e-5F);
-    expect_near(compressed.vectors().along(axis), vectors.along(axis), 1e-5F);
+    expect_share(compressed.color * dot(compressed.direction, axis), vectors.along(axis), 1e-5F);
+    expect_share(compressed.vectors().along(axis), vectors.along(axis), 1e-5F);
     EXPECT_GE(std::min({compressed.color.x, compressed.color.y, compressed.color.z}), 0);
   }
 }

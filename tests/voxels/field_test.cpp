@@ -7,19 +7,13 @@ namespace gicodec::voxels {
 namespace {
 
 constexpr BrickShape kShape{4};
-constexpr auto kForm = VoxelForm::halves;
+constexpr auto kFieldForm = VoxelForm::halves;
 constexpr std::uint32_t kCells = 24;
 
 VoxelField field_of(const BrickPool& pool, const std::function<bool(std::size_t)>& has = {}) {
-  VoxelField field(pool.shape(), kForm);
+  VoxelField field(pool.shape(), kFieldForm);
   field.assign(test::geometry(pool.slots()), pool.bricks(), pool.light(), has);
   return field;
-}
-
-void expect_near(Vec3 value, Vec3 expected, float error) {
-  EXPECT_NEAR(value.x, expected.x, error);
-  EXPECT_NEAR(value.y, expected.y, error);
-  EXPECT_NEAR(value.z, expected.z, error);
 }
 
 Vec3 seen(const Voxel& voxel, Vec3 n) {
@@ -29,9 +23,9 @@ Vec3 seen(const Voxel& voxel, Vec3 n) {
 
 TEST(VoxelField, IsExactAtTheCentresOfVoxels) {
   for (const unsigned side : {4U, 8U}) {
-    const Octree octree = test::random_octree(kCells, 0.1F, 1, side, kForm);
-    const VoxelField field = field_of(test::pooled(octree, {side}, kForm));
-    const VoxelCode code(kForm);
+    const Octree octree = test::random_octree(kCells, 0.1F, 1, side, kFieldForm);
+    const VoxelField field = field_of(test::pooled(octree, {side}, kFieldForm));
+    const VoxelCode code(kFieldForm);
     ddgi::Random random(2);
     for (unsigned level = 0; level < octree.size(); ++level) {
       for (std::size_t i = 0; i < octree[level].keys.size(); i += 7) {
@@ -42,63 +36,64 @@ TEST(VoxelField, IsExactAtTheCentresOfVoxels) {
           EXPECT_EQ(field.irradiance(at, axis_of(d), width), voxel.color[d]);
         }
         const Vec3 n = test::random_direction(random);
-        expect_near(field.irradiance(at, n, width), seen(voxel, n), 1e-5F);
+        test::expect_near(field.irradiance(at, n, width), seen(voxel, n), 1e-5F);
       }
     }
   }
 }
 
 TEST(VoxelField, IsConstantWhereVoxelsAre) {
-  Octree octree = test::random_octree(kCells, 0.05F, 4, 4, kForm);
-  const VoxelCode code(kForm);
+  Octree octree = test::random_octree(kCells, 0.05F, 4, 4, kFieldForm);
+  const VoxelCode code(kFieldForm);
   Voxel constant;
   constant.color.fill({0.25F, 3, 100});
   for (std::size_t i = 0; i < octree[0].keys.size(); ++i) {
     code.store(&octree[0].records[i * code.bytes()], constant);
   }
   pull(octree, code);
-  const VoxelField field = field_of(test::pooled(octree, kShape, kForm));
+  const VoxelField field = field_of(test::pooled(octree, kShape, kFieldForm));
   ddgi::Random random(5);
   for (int i = 0; i < 1000; ++i) {
     const Vec3 value = field.irradiance(test::random_point(random, -20, 30),
                                         test::random_direction(random), random.in(0, 20));
-    expect_near(value / 100, Vec3{0.25F, 3, 100} / 100, 1e-5F);
+    test::expect_near(value / 100, Vec3{0.25F, 3, 100} / 100, 1e-5F);
   }
 }
 
 TEST(VoxelField, GoesFromVoxelToVoxelAndFromLevelToLevel) {
-  const Octree octree = test::random_octree(8, 1, 6, 4, kForm);  // all are there
-  const VoxelField field = field_of(test::pooled(octree, kShape, kForm));
+  const Octree octree = test::random_octree(8, 1, 6, 4, kFieldForm);  // all are there
+  const VoxelField field = field_of(test::pooled(octree, kShape, kFieldForm));
   const Vec3 a = test::centre_of({2, 3, 4}, 0), b = test::centre_of({3, 3, 4}, 0), up{0, 1, 0};
   const Vec3 at_a = field.irradiance(a, up, 0), at_b = field.irradiance(b, up, 0);
-  expect_near(field.irradiance(lerp(a, b, 0.25F), up, 0), lerp(at_a, at_b, 0.25F), 1e-5F);
+  test::expect_near(field.irradiance(lerp(a, b, 0.25F), up, 0), lerp(at_a, at_b, 0.25F), 1e-5F);
   const Vec3 coarse = field.irradiance(a, up, 1);
   EXPECT_NE(coarse, at_a);
-  expect_near(field.irradiance(a, up, 0.5F * std::sqrt(2.0F)), lerp(at_a, coarse, 0.5F), 1e-5F);
+  test::expect_near(field.irradiance(a, up, 0.5F * std::sqrt(2.0F)), lerp(at_a, coarse, 0.5F),
+                    1e-5F);
   EXPECT_EQ(field.irradiance(a, up, 1e9F), field.irradiance(a, up, 1));
 }
 
 /// What is within a solid has no share of what is outside.
 TEST(VoxelField, DarkDirectionsHaveNoWeight) {
-  Octree octree = test::random_octree(4, 1, 7, 4, kForm);
-  const VoxelCode code(kForm);
+  Octree octree = test::random_octree(4, 1, 7, 4, kFieldForm);
+  const VoxelCode code(kFieldForm);
   for (std::size_t i = 0; i < octree[0].keys.size(); ++i) {
     Voxel voxel = code.load(&octree[0].records[i * code.bytes()]);
     if (morton_cell(octree[0].keys[i])[0] == 1) voxel.color[0] = {};
     code.store(&octree[0].records[i * code.bytes()], voxel);
   }
-  const VoxelField field = field_of(test::pooled(octree, kShape, kForm));
+  const VoxelField field = field_of(test::pooled(octree, kShape, kFieldForm));
   const Vec3 lit = test::centre_of({0, 2, 1}, 0), dark = test::centre_of({1, 2, 1}, 0);
   const Vec3 between = lerp(lit, dark, 0.7F), east{1, 0, 0};
-  expect_near(field.irradiance(between, east, 0), field.irradiance(lit, east, 0), 1e-5F);
+  test::expect_near(field.irradiance(between, east, 0), field.irradiance(lit, east, 0), 1e-5F);
   EXPECT_EQ(field.irradiance(dark, east, 0), Vec3{});
   EXPECT_NE(field.irradiance(dark, {-1, 0, 0}, 0), Vec3{});
 }
 
 /// As soon as the coarsest level is there, all is lit; then by what is there of finer ones.
 TEST(VoxelField, CoarserLevelsStandInForWhatHasNotCome) {
-  const Octree octree = test::random_octree(kCells, 0.1F, 8, 4, kForm);
-  const BrickPool pool = test::pooled(octree, kShape, kForm);
+  const Octree octree = test::random_octree(kCells, 0.1F, 8, 4, kFieldForm);
+  const BrickPool pool = test::pooled(octree, kShape, kFieldForm);
   ddgi::Random random(9);
   for (unsigned least = static_cast<unsigned>(octree.size()); least-- > 0;) {
     const VoxelField field = field_of(pool, [&](std::size_t slot) {

@@ -7,6 +7,8 @@
 
 #include "ddgi/noise.h"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cstring>
 #include <map>
@@ -16,6 +18,12 @@
 namespace gicodec::voxels::test {
 
 inline constexpr std::array kForms{VoxelForm::shared_exponent, VoxelForm::halves};
+
+inline void expect_near(Vec3 value, Vec3 expected, float error) {
+  EXPECT_NEAR(value.x, expected.x, error);
+  EXPECT_NEAR(value.y, expected.y, error);
+  EXPECT_NEAR(value.z, expected.z, error);
+}
 
 inline Vec3 random_direction(ddgi::Random& random) {
   Vec3 d;

@@ -28,12 +28,6 @@ std::pair<Bytes, Bytes> traced(const ddgi::Scene& scene, const VoxelOptions& opt
   return {{pool.bricks().begin(), pool.bricks().end()}, {pool.light().begin(), pool.light().end()}};
 }
 
-void expect_near(Vec3 value, Vec3 expected, float error) {
-  EXPECT_NEAR(value.x, expected.x, error);
-  EXPECT_NEAR(value.y, expected.y, error);
-  EXPECT_NEAR(value.z, expected.z, error);
-}
-
 /// In a closed room whose walls glow and reflect, radiance is e / (1 − albedo) everywhere.
 TEST(VoxelServer, LightBouncesUntilItSettles) {
   const ddgi::Scene scene = ddgi::test::room({2, 1.5F, 3}, 0.5F, 0.2F);
@@ -43,7 +37,7 @@ TEST(VoxelServer, LightBouncesUntilItSettles) {
   for (int i = 0; i < 100; ++i) {
     // On the ceiling, away from voxels with a face outside of the room.
     const Vec3 place{random.in(-0.9F, 0.9F), 1.5F, random.in(-1.5F, 1.5F)};
-    expect_near(server.field().irradiance(place, {0, -1, 0}, 0), {0.4F, 0.4F, 0.4F}, 0.004F);
+    test::expect_near(server.field().irradiance(place, {0, -1, 0}, 0), {0.4F, 0.4F, 0.4F}, 0.004F);
   }
   const std::uint64_t rays = server.rays();
   EXPECT_LE(rays, server.octree()[0].keys.size() * 6 * 6);
@@ -53,7 +47,8 @@ TEST(VoxelServer, LightBouncesUntilItSettles) {
   EXPECT_EQ(server.rays(), rays);
   VoxelServer first(scene, few(scene, {"size=0.9", "warmup=0", "form=halves"}), 2, {});
   first.update(0);
-  expect_near(first.field().irradiance({0, 1.5F, 0}, {0, -1, 0}, 0), {0.2F, 0.2F, 0.2F}, 0.002F);
+  test::expect_near(first.field().irradiance({0, 1.5F, 0}, {0, -1, 0}, 0), {0.2F, 0.2F, 0.2F},
+                    0.002F);
 }
 
 /// Black ground below a sky of one radiance: all of it from above, nothing from within the ground,
@@ -82,10 +77,10 @@ void expect_sky_over_ground(bool all_directions) {
   const float gathered = all_directions ? 1 : 0;
   for (std::size_t i = 0; i < leaves.keys.size(); ++i) {
     const Voxel voxel = code.load(&leaves.records[i * code.bytes()]);
-    expect_near(voxel.color[2], sky, 0.01F);
+    test::expect_near(voxel.color[2], sky, 0.01F);
     EXPECT_EQ(voxel.color[3], Vec3{});
     for (const std::size_t side : {0U, 1U, 4U, 5U}) {
-      expect_near(voxel.color[side], sky * (0.5F * gathered), 0.02F * gathered);
+      test::expect_near(voxel.color[side], sky * (0.5F * gathered), 0.02F * gathered);
     }
     EXPECT_EQ(voxel.cover, (std::array<float, 6>{1, 1, 1, 1, 1, 1}));
   }

@@ -13,14 +13,14 @@ constexpr float kRoad = 5.5F;    // half width of the road
 constexpr float kFront = 15.2F;  // from the middle to the houses
 constexpr float kDepth = 20;     // of the houses
 
-struct Materials {
+struct StreetMaterials {
   std::uint32_t asphalt, paving, grass, trunk, leaf, iron, roof, sill, glass, window, shop, bulb,
       rubber, chrome, white, black, red_paint, blue_paint, green_paint, red_beacon, blue_beacon,
       head_lamp, tail_lamp;
   std::array<std::uint32_t, 4> walls;
 };
 
-Materials add_materials(Scene& s) {
+StreetMaterials add_street_materials(Scene& s) {
   const auto add = [&](const char* name, Image image) {
     const auto index = static_cast<std::int32_t>(s.add_image(std::move(image)));
     return s.add_material({.name = name, .image = index});
@@ -28,7 +28,7 @@ Materials add_materials(Scene& s) {
   const auto plain = [&](const char* name, Vec3 colour, Vec3 emission = {}) {
     return s.add_material({.name = name, .colour = colour, .emission = emission});
   };
-  Materials m{};
+  StreetMaterials m{};
   m.asphalt = add("asphalt", mottled({0.10F, 0.10F, 0.11F}, {0.17F, 0.165F, 0.16F}, 16, 1.6F, 51));
   m.paving = add("paving", bricks({.colour = {0.36F, 0.34F, 0.32F},
                                    .mortar = {0.16F, 0.15F, 0.14F},
@@ -81,7 +81,7 @@ Materials add_materials(Scene& s) {
 struct Town {
   std::array<MeshBuilder, 4> walls;
   MeshBuilder asphalt, paving, grass, trunk, leaf, iron, roof, sill, glass, window, shop, bulb;
-  explicit Town(const Materials& m)
+  explicit Town(const StreetMaterials& m)
       : walls{MeshBuilder(m.walls[0], 2.4F), MeshBuilder(m.walls[1], 4), MeshBuilder(m.walls[2], 3),
               MeshBuilder(m.walls[3], 4)},
         asphalt(m.asphalt, 6),
@@ -170,7 +170,7 @@ void add_tree(Town& town, float side, float z, std::uint32_t seed) {
 }
 
 /// A car at the origin that looks along +z. Returns its meshes.
-std::vector<std::uint32_t> add_car(Scene& s, const Materials& m, std::uint32_t paint,
+std::vector<std::uint32_t> add_car(Scene& s, const StreetMaterials& m, std::uint32_t paint,
                                    std::uint32_t door, bool police) {
   MeshBuilder body(paint), sides(door), glass(m.glass), rubber(m.rubber), chrome(m.chrome),
       head(m.head_lamp), tail(m.tail_lamp), red(m.red_beacon), blue(m.blue_beacon);
@@ -242,7 +242,7 @@ Scene make_street() {
   s.name = "street";
   s.grid = {32, 4, 64};
   s.volume = {{-31, 0.7F, -63}, {31, 7.9F, 63}};
-  const Materials m = add_materials(s);
+  const StreetMaterials m = add_street_materials(s);
   Town town(m);
   build_town(town, s);
   Object fixed{.name = "town"};

@@ -14,17 +14,17 @@ constexpr int kSlabs = 9;       // per side
 constexpr float kFirstFall = 0.2F;
 constexpr float kLastFall = 4.6F;
 
-struct Materials {
+struct TombMaterials {
   std::uint32_t wall, floor, pillar, statue, gold, clay, slab, soil, flame, wood;
 };
 
-Materials add_materials(Scene& s) {
+TombMaterials add_tomb_materials(Scene& s) {
   const auto add = [&](const char* name, Image image, Vec3 emission = {}) {
     const auto index = static_cast<std::int32_t>(s.add_image(std::move(image)));
     return s.add_material(
         {.name = name, .colour = {1, 1, 1}, .image = index, .emission = emission});
   };
-  Materials m{};
+  TombMaterials m{};
   m.wall = add("wall", bricks({.colour = {0.55F, 0.42F, 0.28F},
                                .mortar = {0.25F, 0.19F, 0.13F},
                                .columns = 3,
@@ -139,7 +139,7 @@ Scene make_tomb() {
   s.name = "tomb";
   s.grid = {16, 8, 16};
   s.volume = {{-15, 0.7F, -15}, {15, 11.9F, 15}};
-  const Materials m = add_materials(s);
+  const TombMaterials m = add_tomb_materials(s);
 
   MeshBuilder walls(m.wall, 3.6F), floor(m.floor, 2.4F), shafts(m.pillar, 2),
       blocks(m.pillar, 1.5F), statue(m.statue, 2), gold(m.gold, 1), clay(m.clay, 1),

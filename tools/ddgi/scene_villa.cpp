@@ -16,17 +16,17 @@ constexpr float kWall = 0.8F;      // thickness
 constexpr float kHall = 9.5F;      // height of the main hall
 constexpr float kWing = 6.5F;      // height of the other rooms
 
-struct Materials {
+struct VillaMaterials {
   std::uint32_t plaster, red, stone, marble, mosaic, wood, roof, lawn, water, bronze, gold, cloth,
       clay, leaf, lamp;
 };
 
-Materials add_materials(Scene& s) {
+VillaMaterials add_villa_materials(Scene& s) {
   const auto add = [&](const char* name, Image image) {
     const auto index = static_cast<std::int32_t>(s.add_image(std::move(image)));
     return s.add_material({.name = name, .image = index});
   };
-  Materials m{};
+  VillaMaterials m{};
   m.plaster = add("plaster", mottled({0.78F, 0.72F, 0.62F}, {0.66F, 0.58F, 0.48F}, 5, 1.3F, 21));
   m.red = add("red plaster", mottled({0.58F, 0.14F, 0.09F}, {0.46F, 0.12F, 0.08F}, 6, 1.2F, 22));
   m.stone = add("stone", bricks({.colour = {0.62F, 0.57F, 0.48F},
@@ -55,7 +55,7 @@ Materials add_materials(Scene& s) {
 struct Builders {
   MeshBuilder plaster, red, stone, marble, mosaic, wood, roof, lawn, water, bronze, gold, cloth,
       clay, leaf, lamp;
-  explicit Builders(const Materials& m)
+  explicit Builders(const VillaMaterials& m)
       : plaster(m.plaster, 4),
         red(m.red, 3),
         stone(m.stone, 2),
@@ -286,7 +286,7 @@ constexpr std::array<Planet, 5> kPlanets{{{1.9F, 6.6F, 0.50F, 0.9F, 0.3F, false}
                                           {5.6F, 8.3F, 1.05F, -0.2F, 1.2F, true}}};
 constexpr Vec3 kOrrery{0, 0, -17.5F};
 
-void add_orrery(Scene& s, const Materials& m) {
+void add_orrery(Scene& s, const VillaMaterials& m) {
   MeshBuilder foot(m.bronze, 1), sun(m.gold, 1);
   const std::array<Vec2, 9> profile{{{0, 0},
                                      {1.8F, 0},
@@ -356,7 +356,7 @@ Scene make_villa() {
   s.name = "villa";
   s.grid = {16, 8, 32};
   s.volume = {{-15, -0.95F, -31}, {15, 10.6F, 31}};  // the lowest layer lies below the floors
-  const Materials m = add_materials(s);
+  const VillaMaterials m = add_villa_materials(s);
   Builders b(m);
   build_house(b);
   furnish(b, s);

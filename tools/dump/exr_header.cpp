@@ -18,11 +18,11 @@
 namespace gicodec::tools {
 namespace {
 
-constexpr std::uint32_t kMagic = 20000630;
+constexpr std::uint32_t kExrMagic = 20000630;
 constexpr std::uint32_t kTiled = 0x200, kNonImage = 0x800, kMultiPart = 0x1000;
 constexpr std::int64_t kMaxHeaderBytes = 64 << 20;
 constexpr std::size_t kMaxParts = 256;
-constexpr std::size_t kMaxName = 255;
+constexpr std::size_t kMaxExrName = 255;
 /// No lossless compression makes an image smaller by more; DWA does, which loses bits.
 constexpr std::uint64_t kDwaRatio = 100000;
 
@@ -74,7 +74,7 @@ class HeaderWalk {
   }
 
   std::vector<ExrPart> run() {
-    if (word() != kMagic) fail(Exit::bad_input, "{}: is not an EXR file", path_);
+    if (word() != kExrMagic) fail(Exit::bad_input, "{}: is not an EXR file", path_);
     const std::uint32_t version = word();
     if ((version & 0xFF) != 2) {
       fail(Exit::bad_input, "{}: EXR version {} is not supported", path_, version & 0xFF);
@@ -259,7 +259,7 @@ class HeaderWalk {
       char c = 0;
       read(&c, 1);
       if (c == '\0') return text;
-      if (text.size() == kMaxName) fail(Exit::bad_input, "{}: its EXR header is damaged", path_);
+      if (text.size() == kMaxExrName) fail(Exit::bad_input, "{}: its EXR header is damaged", path_);
       text += c;
     }
   }

@@ -15,7 +15,7 @@ namespace {
 std::atomic<int> first_output_error = 0;
 
 /// Bytes of the first character of `text`, and its code; 0 if it is not UTF-8.
-std::size_t character(std::string_view text, std::uint32_t& code) {
+std::size_t read_character(std::string_view text, std::uint32_t& code) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const std::uint32_t lead = byte(0);
   const std::size_t size = lead < 0x80   ? 1
@@ -60,7 +60,7 @@ std::string replaced(std::string_view text, const Replace& replace) {
   out.reserve(text.size());
   while (!text.empty()) {
     std::uint32_t code = 0;
-    const std::size_t size = character(text, code);
+    const std::size_t size = read_character(text, code);
     if (size == 0) {
       escape(text.front(), out);
     } else if (!replace(code, text.substr(0, size), out)) {

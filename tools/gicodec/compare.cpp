@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 /// Replaces the frame's number of files that are paired by name.
 constexpr std::uint64_t kOneName = UINT64_MAX;
 
-constexpr const char* kFooter =
+constexpr const char* kCompareFooter =
     "Counts probes, texels and channels that differ, and says by how much and where first. "
     "Distances\n"
     "are codes for integer channels and steps between neighbouring values (ULP) for "
@@ -259,7 +259,7 @@ Exit compare(const CompareOptions& options, const Cli& cli) {
 void add_compare(Cli& cli) {
   auto options = std::make_shared<CompareOptions>();
   Command* command = cli.app.add_command("compare", "Says how two dumps differ");
-  command->footer(kFooter);
+  command->footer(kCompareFooter);
   command->add_option("left", options->left, "A dump or a directory")->required()->type_name("A");
   command->add_option("right", options->right, "Another one")->required()->type_name("B");
   command->add_flag("--texels-only", options->texels_only, "Ignore attributes and channel types");

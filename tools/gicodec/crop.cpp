@@ -21,7 +21,7 @@
 namespace gicodec::tools {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kCropFooter =
     "Writes dumps of the same names that hold only the probes, or blocks, of a box of the grid,\n"
     "texels and attributes as they are, but gicodec:origin, which goes to the first one of the\n"
     "box, and those that say its size. A block is what --block says, 8x8 texels unless given.\n"
@@ -221,7 +221,7 @@ Exit crop(const CropOptions& options, const Cli& cli) {
 void add_crop(Cli& cli) {
   auto options = std::make_shared<CropOptions>();
   Command* command = cli.app.add_command("crop", "Cuts a box of probes out of dumps");
-  command->footer(kFooter);
+  command->footer(kCropFooter);
   command->add_option("--origin", options->origin, "First probe of the box")
       ->required()
       ->type_name("X,Y,Z");

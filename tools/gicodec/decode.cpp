@@ -24,7 +24,7 @@
 namespace gicodec::tools {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kDecodeFooter =
     "Writes the files that encode read: same names, channels, attributes and bits; EXR where the\n"
     "container does not say, as recordings and traces do not. In names of files %2F stands for a\n"
     "slash, and other bytes that they cannot have likewise. --files makes them of another kind,\n"
@@ -250,7 +250,7 @@ void add_decode(Cli& cli) {
   auto options = std::make_shared<DecodeOptions>();
   Command* command =
       cli.app.add_command("decode", "Unpacks a .gic container into the dumps it was made from");
-  command->footer(kFooter);
+  command->footer(kDecodeFooter);
   command->add_option("container", options->input, "Container to read; - for standard input")
       ->required()
       ->type_name("FILE");

@@ -31,7 +31,7 @@
 namespace gicodec::tools {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kEncodeFooter =
     "Dumps are files NAME.FFFF.exr (or NAME_FFFF, NAME-FFFF, NAMEFFFF), or .dds, .ktx2 and .raw, "
     "one\n"
     "per texture and frame; a directory stands for all of them in it. PNG, TIFF and DPX are read\n"
@@ -286,7 +286,7 @@ void check_container_output(const EncodeOptions& options, const std::vector<Sequ
 }
 
 /// "hevc (libx265)".
-std::string backend_text(const std::string& backend, const std::vector<Lane>& lanes) {
+std::string text_of_lanes(const std::string& backend, const std::vector<Lane>& lanes) {
   std::set<std::string> encoders;
   for (const Lane& lane : lanes) {
     if (!lane.stored.encoder.empty()) encoders.insert(lane.stored.encoder);
@@ -363,7 +363,7 @@ Exit encode(const EncodeOptions& options, const Cli& cli) {
       description.volumes.size() == 1 ? "" : "s", lanes.size(), lanes.size() == 1 ? "" : "s",
       frames.size(), frames.size() == 1 ? "" : "s", texel_bytes, output.bytes(),
       static_cast<double>(texel_bytes) / static_cast<double>(output.bytes()),
-      backend_text(options.backend.backend, lanes), lossy ? ", LOSSY" : ", lossless"));
+      text_of_lanes(options.backend.backend, lanes), lossy ? ", LOSSY" : ", lossless"));
   return Exit::ok;
 }
 
@@ -372,7 +372,7 @@ Exit encode(const EncodeOptions& options, const Cli& cli) {
 void add_encode(Cli& cli) {
   auto options = std::make_shared<EncodeOptions>();
   Command* command = cli.app.add_command("encode", "Packs dumps into a .gic container");
-  command->footer(kFooter);
+  command->footer(kEncodeFooter);
   command->add_option("-o,--output", options->output, "Container to write; - for standard output")
       ->required()
       ->type_name("FILE");

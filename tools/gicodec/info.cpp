@@ -14,7 +14,7 @@
 namespace gicodec::tools {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kInfoFooter =
     "Of a dump it says what is in it, and the command that packs it. Of a container: ratios are\n"
     "against the full textures, guard bands included, and against the records of the\n"
     "blocks in the packets. Packet bytes count everything: header, block indices, guard bands "
@@ -144,7 +144,7 @@ void add_info(Cli& cli) {
   auto options = std::make_shared<InfoOptions>();
   Command* command = cli.app.add_command(
       "info", "Lists volumes, textures, frames, sizes and ratios of a container");
-  command->footer(kFooter);
+  command->footer(kInfoFooter);
   command->add_option("container", options->input, "Container to read; - for standard input")
       ->required()
       ->type_name("FILE");

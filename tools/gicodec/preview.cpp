@@ -20,7 +20,7 @@
 namespace gicodec::tools {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kPreviewFooter =
     "Colour is decoded (10-bit codes: to the power of 5, as irradiance is stored), exposed so "
     "that\n"
     "its logarithmic mean is middle grey, tone-mapped by x / (1 + x) and written as sRGB. Colour\n"
@@ -166,7 +166,7 @@ Exit preview(const PreviewOptions& options, const Cli& cli) {
 void add_preview(Cli& cli) {
   auto options = std::make_shared<PreviewOptions>();
   Command* command = cli.app.add_command("preview", "Writes a PNG of a texture to look at");
-  command->footer(kFooter);
+  command->footer(kPreviewFooter);
   command->add_option("input", options->input, "A container or a dump")
       ->required()
       ->type_name("FILE");

@@ -26,7 +26,7 @@
 namespace gicodec::tools {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kVerifyFooter =
     "Decodes every frame and compares texels, channels and attributes with the files. Exit code 0\n"
     "means that all of them are the same, 1 that something differs, is missing or is left over.\n"
     "Probes that encode left out (--inactive) are skipped. Without files every "
@@ -373,7 +373,7 @@ void add_verify(Cli& cli) {
   auto options = std::make_shared<VerifyOptions>();
   Command* command = cli.app.add_command(
       "verify", "Proves that a container is sound, and gives back its dumps bit by bit");
-  command->footer(kFooter);
+  command->footer(kVerifyFooter);
   command->add_option("container", options->input, "Container to check; - for standard input")
       ->required()
       ->type_name("FILE");

@@ -6,7 +6,7 @@
 namespace gicodec::maps {
 namespace {
 
-constexpr std::uint32_t kBlock = kMapBaseBlock * kMapBaseBlock;
+constexpr std::uint32_t kBaseBlockTexels = kMapBaseBlock * kMapBaseBlock;
 constexpr float kMax = 65504;  // of a half
 
 constexpr std::uint32_t kTileBits = kMapTile * kMapTile;
@@ -70,7 +70,8 @@ std::vector<std::byte> texels_of(const Parameterisation& map, std::span<const Ma
 }
 
 std::vector<std::byte> coefficients_of(const TexelCode& code, std::span<const Vec3> bases) {
-  std::vector<std::byte> out((bases.size() + kBlock - 1) / kBlock * kBlock * code.bytes());
+  std::vector<std::byte> out((bases.size() + kBaseBlockTexels - 1) / kBaseBlockTexels *
+                             kBaseBlockTexels * code.bytes());
   for (std::size_t i = 0; i < bases.size(); ++i) code.store(&out[code.bytes() * i], bases[i]);
   return out;
 }

@@ -17,7 +17,6 @@ constexpr double kAttempt = 2, kWebAttempt = 8;
 constexpr double kFirstBackoff = 0.1;  ///< seconds between attempts, doubled each time
 constexpr double kLastBackoff = 4;
 constexpr double kViewInterval = 0.02;  ///< seconds between two viewpoints, at least
-constexpr double kGoodbye = 0.7;        ///< seconds for the last message to arrive
 constexpr unsigned kManyLosses = 2;     ///< after which it may be no accident
 constexpr const char* kIfSlow =
     " (if the link is slow, --budget-bytes makes updates smaller, --timeout waits longer)";

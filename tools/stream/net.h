@@ -11,6 +11,8 @@
 
 namespace gicodec::streaming {
 
+inline constexpr double kGoodbye = 0.7;  ///< seconds for the last messages to arrive
+
 /// One thread; throws tools::Error of Exit::io.
 class Net {
  public:

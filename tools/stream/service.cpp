@@ -16,8 +16,7 @@
 namespace gicodec::streaming {
 namespace {
 
-constexpr double kGoodbyeSeconds = 0.7;  ///< for the last messages to arrive
-constexpr double kSettleSeconds = 10;    ///< for the last updates to be acknowledged
+constexpr double kSettleSeconds = 10;  ///< for the last updates to be acknowledged
 constexpr double kPoll = 1e-3;
 constexpr double kLogBurst = 500, kLogRate = 10;  ///< lines, and lines per second
 constexpr std::uintptr_t kNoConnection = 0;
@@ -381,7 +380,7 @@ void Service::say_goodbye() {
   for (const ConnectionId id : ids) server_.drop(id, Reason::shutdown);
   take_events();
   net_.flush();
-  const double end = now() + kGoodbyeSeconds;
+  const double end = now() + kGoodbye;
   NetEvent event;
   while (!connections_.empty() && now() < end) {
     if (net_.next(event, 10) && event.type == NetEvent::Type::closed) handle(event);

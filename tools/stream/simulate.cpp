@@ -17,7 +17,6 @@ namespace {
 constexpr double kSpread = 16;  ///< seconds of the camera's path over which clients are spread
 constexpr double kAgain = 0.5;  ///< seconds before a lost client connects again
 constexpr std::chrono::milliseconds kIdle{1};
-constexpr double kGoodbye = 0.7;        ///< seconds for the last messages to arrive
 constexpr std::size_t kMax = 1U << 20;  ///< samples kept
 
 void keep(std::vector<float>& samples, double value) {

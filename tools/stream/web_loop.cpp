@@ -16,7 +16,7 @@ using tools::Exit;
 using tools::fail;
 
 constexpr std::size_t kRead = 64 << 10;     ///< bytes that are read at once
-constexpr std::size_t kFiles = 64;          ///< of the program beside connections
+constexpr std::size_t kLoopFiles = 64;      ///< of the program beside connections
 constexpr lws_usec_t kLookAfter = 250'000;  ///< microseconds
 
 WebLink* link_of(lws* wsi) { return static_cast<WebLink*>(lws_get_opaque_user_data(wsi)); }
@@ -59,7 +59,7 @@ void WebLoop::Loop::start() {
   info.retry_and_idle_policy = &patience;
   info.pt_serv_buf_size = kRead;
   info.fd_limit_per_thread = static_cast<unsigned>(
-      (serves ? state.options.links + HalfOpen::kMax : state.options.links) + kFiles);
+      (serves ? state.options.links + HalfOpen::kMax : state.options.links) + kLoopFiles);
   context = lws_create_context(&info);
   vhost = context == nullptr ? nullptr : lws_create_vhost(context, &info);
   if (vhost == nullptr || !prepared) fail(Exit::io, "TLS or WebSockets cannot be started here");

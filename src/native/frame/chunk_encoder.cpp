@@ -345,11 +345,11 @@ bool encode_modelled(const Update& u, std::span<const std::uint32_t> positions,
 }
 
 /// Of raw records: what may be tried in several ways.
-constexpr std::size_t kLittle = 1 << 16;
+constexpr std::size_t kLittleRaw = 1 << 16;
 
 /// Where rows have tables that cost much, or steps of large components that they do not see.
 bool planes_may_pay(const Update& u, std::size_t raw_size) {
-  return raw_size <= kLittle || u.layout.low != 0;
+  return raw_size <= kLittleRaw || u.layout.low != 0;
 }
 }  // namespace
 
@@ -386,7 +386,7 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
       done = encode_tokens(u, positions, texels, settings.streams, raw_size, w.tokens, out);
   } else {
     if (by_rows) try_rows(false);
-    if (by_rows && raw_size <= kLittle && w.rows.planes.places_left_out()) try_rows(true);
+    if (by_rows && raw_size <= kLittleRaw && w.rows.planes.places_left_out()) try_rows(true);
     const bool tries = !done || (settings.others && planes_may_pay(u, raw_size));
     if (tries && is_small_box(u.box)) {
       tried([&](std::size_t most) {

@@ -7,7 +7,7 @@
 namespace gicodec::native {
 namespace {
 
-constexpr std::size_t kSampled = 8;  ///< blocks
+constexpr std::size_t kSampledBlocks = 8;  ///< blocks
 
 /// The values of a plane as far as they were seen.
 struct PlaneStatistics {
@@ -42,7 +42,7 @@ class StepFinder {
 
   void run() {
     const bool zeros = job_.desc.presence == Presence::all;
-    const std::size_t blocks = job_.blocks.size(), sampled = std::min(blocks, kSampled);
+    const std::size_t blocks = job_.blocks.size(), sampled = std::min(blocks, kSampledBlocks);
     std::uint64_t candidates = (std::uint64_t{1} << layout_.planes) - 1;
     for (std::size_t i = 0; i < sampled && candidates != 0; ++i) {
       unpack(i * blocks / sampled);

@@ -7,7 +7,7 @@
 namespace gicodec {
 namespace {
 
-constexpr double kMin = 2 << 10;
+constexpr double kMinBytes = 2 << 10;
 // Queueing delays, in intervals between updates. With an update's own time they stay below three.
 constexpr double kEmpty = 0.5;  ///< up to here budgets grow fast, those of new clients faster still
 constexpr double kGood = 1;     ///< up to here they grow evenly, so that shares become even
@@ -16,7 +16,7 @@ constexpr double kTooLate = 1.75;  ///< no update while an older one is in fligh
 constexpr double kShrink = 0.85, kShrinkOfMany = 0.7, kMany = 2, kMaxShrink = 0.1;
 constexpr double kGrowth = 0.05;  // of the mean
 constexpr double kMaxGrowth = 0.25;
-constexpr double kMax = 1 << 30;
+constexpr double kMaxBytes = 1 << 30;
 /// Seconds after which the server lets a busy path become idle, to measure it again.
 constexpr double kLookAgain = 10;
 
@@ -43,7 +43,7 @@ double next_limit_for_few(double before, const WrittenBlocks& written, double se
 }
 
 CongestionControl::CongestionControl(std::uint64_t first) noexcept
-    : first_(std::clamp(static_cast<double>(first), kMin, kMax)), bytes_(first_) {}
+    : first_(std::clamp(static_cast<double>(first), kMinBytes, kMaxBytes)), bytes_(first_) {}
 
 void CongestionControl::answered(double seconds, double now) noexcept {
   if (idle_ >= 0 && seconds > idle_) return;
@@ -87,7 +87,7 @@ void CongestionControl::acknowledged(const Sent& update, double now, double inte
     const double rate = static_cast<double>(delivered_ - update.delivered) / (latency - idle_);
     const double shrink = bytes_ > kMany * mean ? kShrinkOfMany : kShrink;
     bytes_ = std::clamp(shrink * rate * interval, kMaxShrink * bytes_, shrink * bytes_);
-    bytes_ = std::max(bytes_, kMin);
+    bytes_ = std::max(bytes_, kMinBytes);
   } else if (!update.limited || queue > (update.alone ? kFull : kGood)) {
     return;
   } else if (queue <= kEmpty && (starting_ || bytes_ <= mean)) {
@@ -96,10 +96,10 @@ void CongestionControl::acknowledged(const Sent& update, double now, double inte
     bytes_ *= !starting_ ? 1 + kMaxGrowth : much ? 2 : 1;
   } else {
     // Budgets grow as fast on long paths as on short ones.
-    bytes_ +=
-        std::clamp(kGrowth * mean * std::max(1.0, idle_ / interval), kMin / 4, kMaxGrowth * bytes_);
+    bytes_ += std::clamp(kGrowth * mean * std::max(1.0, idle_ / interval), kMinBytes / 4,
+                         kMaxGrowth * bytes_);
   }
-  bytes_ = std::min(bytes_, kMax);
+  bytes_ = std::min(bytes_, kMaxBytes);
   starting_ = starting_ && queue <= kEmpty;
   changed_ = now;
 }

@@ -12,8 +12,6 @@ namespace {
 constexpr int kAttempts = 8;
 /// Candidates that are weighed, per block that can be sent.
 constexpr std::size_t kWeighed = 4;
-/// Assumed compression ratio before the first packet.
-constexpr float kGuessedRatio = 3;
 
 std::vector<Planned> plan(const ServedClient& client, std::span<const Candidate> chosen) {
   std::vector<Planned> planned;

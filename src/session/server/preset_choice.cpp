@@ -30,7 +30,7 @@ constexpr bool in_order(const ModelCosts& one) noexcept {
 }
 static_assert(std::all_of(kCosts.begin(), kCosts.end(), in_order));
 
-constexpr double kWeight = 1.0 / 8;  ///< of an update in recent means
+constexpr double kRecentWeight = 1.0 / 8;  ///< of an update in recent means
 
 /// The first of the presets up to `slowest` that delivers soonest.
 std::size_t best(const PresetCosts& costs, double throughput, const ByPreset& pace,
@@ -73,7 +73,7 @@ void ProcessorTime::learn(double elapsed, const ByPreset& coded, double other) n
   const double pace = std::clamp(elapsed / (all + other), kMin, kMax);
   for (std::size_t i = 0; i < kPresets.size(); ++i) {
     const double share = coded[i] / (all + other);
-    const double weight = measured_[i] ? std::max(kWeight * share, kForget) : 1;
+    const double weight = measured_[i] ? std::max(kRecentWeight * share, kForget) : 1;
     pace_[i] += weight * (pace - pace_[i]);
     measured_[i] = measured_[i] || 2 * share > 1;
   }
@@ -107,7 +107,7 @@ void PresetChoice::choose(const PresetCosts& last, double throughput, const ByPr
     wished_ = 0;
   }
   if (throughput <= 0 || last.bytes[kFast] <= 0) return;
-  const double weight = recent_.bytes[kFast] == 0 ? 1 : kWeight;
+  const double weight = recent_.bytes[kFast] == 0 ? 1 : kRecentWeight;
   for (std::size_t i = 0; i < kPresets.size(); ++i) {
     recent_.seconds[i] += weight * (last.seconds[i] - recent_.seconds[i]);
     recent_.bytes[i] += weight * (last.bytes[i] - recent_.bytes[i]);

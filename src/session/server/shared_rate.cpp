@@ -6,9 +6,6 @@
 namespace gicodec {
 namespace {
 
-/// Assumed compression ratio before the first packet.
-constexpr float kGuessedRatio = 3;
-
 // Consecutive places and groups are far apart in every period of 2, 4, ... 32 updates.
 constexpr std::uint64_t kPlaces = 13, kGroups = 9;
 /// With many streams every update has some; with few, groups of clients take turns.

@@ -11,6 +11,9 @@
 
 namespace gicodec {
 
+/// Assumed compression ratio before the first packet.
+inline constexpr float kGuessedRatio = 3;
+
 class SharedRate {
  public:
   explicit SharedRate(std::uint32_t group) noexcept : group_(group) {}

@@ -7,10 +7,10 @@
 namespace gicodec::native {
 namespace {
 
-constexpr unsigned kChangedMixer = 0, kDownMixer = 80, kLowMixer = 96, kCopyMixer = 208;
+constexpr unsigned kRowChangedMixer = 0, kDownMixer = 80, kLowMixer = 96, kCopyMixer = 208;
 constexpr unsigned kChannels =
     static_cast<unsigned>(kMaxComponents);  ///< of components, from here on
-constexpr unsigned kTopBits = 4, kHighBits = 4, kLowNodes = 7;
+constexpr unsigned kRowTopBits = 4, kHighBits = 4, kLowNodes = 7;
 
 }  // namespace
 
@@ -28,9 +28,10 @@ bool RecordModel::code_changed_in_row(Coder& coder, const Seen& here, std::uint3
   if (here.known && similar.seen && !must) {
     similar_change = similar.changed ? 2 + std::min(kFew, width_of(similar.residual[last])) : 1;
   }
-  const std::uint32_t was = top_bits(here.previous[last], record.components[last].bits, kTopBits);
+  const std::uint32_t was =
+      top_bits(here.previous[last], record.components[last].bits, kRowTopBits);
   return values_->flag(
-      coder, kChangedMixer + known,
+      coder, kRowChangedMixer + known,
       {{{hashed(kRowChanged, known, similar_change, must ? 1U : 0U), must ? 0 : was},
         {hashed(kRowChanged2, known, std::min(left_, kFew), must ? 0 : history_ & 3),
          std::min(changes_, kMany)},
@@ -87,7 +88,7 @@ std::uint32_t RecordModel::code_difference(Coder& coder, unsigned c, const Seen&
   const bool down = values_->flag(
       coder, kDownMixer + c,
       {{{hashed(kDown + c, similar_sign), sign_of(last_by) * 4 + sign_of(w(column).residual[c])},
-        {hashed(kDownPrevious + c, top_bits(previous, bits, kTopBits)), similar_sign},
+        {hashed(kDownPrevious + c, top_bits(previous, bits, kRowTopBits)), similar_sign},
         {hashed(kDownSimilar + c, similar_sign, gap), std::min(7U, width_of(similar_residual))}}},
       (actual & 1) != 0);
   const std::uint32_t sign = down ? 1 : 0;

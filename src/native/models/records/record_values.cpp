@@ -11,16 +11,16 @@ namespace gicodec::native {
 namespace {
 
 /// Of what a component is predicted.
-enum class Scale { previous, codes, linear };
-Scale scale_of(const Component& component, bool mantissa) {
-  if (mantissa) return Scale::linear;
+enum class ValueScale { previous, codes, linear };
+ValueScale scale_of(const Component& component, bool mantissa) {
+  if (mantissa) return ValueScale::linear;
   if (component.bits > 16 || component.type == ComponentType::opaque ||
       component.type == ComponentType::exponent) {
-    return Scale::previous;
+    return ValueScale::previous;
   }
   return component.type == ComponentType::unorm || component.type == ComponentType::uint
-             ? Scale::linear
-             : Scale::codes;
+             ? ValueScale::linear
+             : ValueScale::codes;
 }
 
 }  // namespace
@@ -29,9 +29,9 @@ Scale scale_of(const Component& component, bool mantissa) {
 /// the error of the lead component's; by the lead component's change and the usual ratio of both.
 std::array<std::uint64_t, RecordModel::kPredictors> RecordModel::predictions(
     unsigned c, const Seen& here, unsigned column) const {
-  const Scale scale = scale_of(desc_.record.components[c], in_units(c));
+  const ValueScale scale = scale_of(desc_.record.components[c], in_units(c));
   const std::uint64_t previous = scaled(c, here.previous);
-  if (scale == Scale::previous) return {previous, previous, previous, previous};
+  if (scale == ValueScale::previous) return {previous, previous, previous, previous};
   std::uint64_t now = 0, before = 0, weights = 0;
   const auto add = [&](const Seen& seen, std::uint64_t weight) {
     if (!seen.known) return;
@@ -49,7 +49,7 @@ std::array<std::uint64_t, RecordModel::kPredictors> RecordModel::predictions(
                                      kMaxPrediction);
   };
   std::array<std::uint64_t, kPredictors> prediction{previous, previous, previous, previous};
-  if (scale == Scale::linear) {
+  if (scale == ValueScale::linear) {
     if (before + previous != 0)
       prediction[1] = in_proportion(previous, now + previous, before + previous);
   } else {
@@ -58,7 +58,7 @@ std::array<std::uint64_t, RecordModel::kPredictors> RecordModel::predictions(
   }
   prediction[2] = prediction[1];
   if (lead_prediction_ == 0) return prediction;
-  if (scale == Scale::linear) {
+  if (scale == ValueScale::linear) {
     prediction[2] = in_proportion(prediction[1], lead_now_, lead_prediction_);
   } else {
     prediction[2] = moved(prediction[1], static_cast<std::int64_t>(lead_now_) -
@@ -136,7 +136,7 @@ std::uint32_t RecordModel::code_number(Coder& coder, unsigned place, Seen& here,
                       static_cast<std::int64_t>(scaled(c, here.previous));
   moved_[c] += static_cast<std::uint64_t>(std::abs(change)) - (moved_[c] >> 4);
   if (lead_prediction_ == 0 &&
-      scale_of(desc_.record.components[c], in_units(c)) != Scale::previous) {
+      scale_of(desc_.record.components[c], in_units(c)) != ValueScale::previous) {
     lead_ = c;
     lead_now_ = scaled(c, here.now);
     lead_prediction_ = std::max<std::uint64_t>(prediction[1], 1);

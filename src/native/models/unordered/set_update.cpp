@@ -10,7 +10,7 @@ namespace gicodec::native {
 namespace {
 
 // Mixers of flags.
-constexpr unsigned kEqualMixer = 2, kPairsMixer = 3, kKeptMixer = 4, kChangedMixer = 8,
+constexpr unsigned kSetEqualMixer = 2, kPairsMixer = 3, kKeptMixer = 4, kChangedMixer = 8,
                    kUnchangedMixer = 176;
 
 /// One in so many of the previous records must be retained to be worth a flag for each of them.
@@ -36,7 +36,7 @@ void SetUpdate::encode(BinaryEncoder& coder, const Record& record,
                        std::span<const std::byte> previous, std::span<const std::byte> records) {
   if (!previous.empty() && !records.empty()) {
     const bool same = std::memcmp(records.data(), previous.data(), records.size()) == 0;
-    if (values_->flag(coder, kEqualMixer, kSetEqual, same)) return;
+    if (values_->flag(coder, kSetEqualMixer, kSetEqual, same)) return;
     if (values_->flag(coder, kPairsMixer, kPairs, pair(record, previous, records))) {
       code_states(coder, static_cast<std::uint32_t>(records.size() / record.bytes));
       set_.encode(coder, record, new_);
@@ -50,7 +50,7 @@ void SetUpdate::encode(BinaryEncoder& coder, const Record& record,
 bool SetUpdate::decode(BinaryDecoder& coder, const Record& record,
                        std::span<const std::byte> previous, std::span<std::byte> records) {
   if (!previous.empty() && !records.empty()) {
-    if (values_->flag(coder, kEqualMixer, kSetEqual, false)) {
+    if (values_->flag(coder, kSetEqualMixer, kSetEqual, false)) {
       std::memcpy(records.data(), previous.data(), records.size());
       return true;
     }
