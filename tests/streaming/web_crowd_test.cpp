@@ -93,5 +93,32 @@ TEST(WebCrowd, TheOldestHandshakesMakeRoomAndAnHonestClientGetsIn) {
   for (const int link : links) ::close(link);
 }
 
+/// Its connections are open, so that none of them makes room.
+TEST(WebCrowd, OneAddressTooManyIsClosedAndCounted) {
+  NetOptions options;
+  options.links = 8;
+  options.links_per_address = 1;
+  const auto server =
+      make_web(WebListen{{"127.0.0.1", 0, Via::plain_web}, {}, {}, {}}, nullptr, options);
+  const auto client = make_web(NetOptions{});
+  static_cast<void>(client->connect({"127.0.0.1", server->port(), Via::plain_web}));
+  EXPECT_TRUE(waits_until([&] {
+    NetEvent event;
+    while (server->next(event)) {
+      if (event.type == NetEvent::Type::opened) return true;
+    }
+    return false;
+  }));
+  EXPECT_EQ(server->turned_away().count, 0U);
+  const int first = connect_from(0, 1, server->port());
+  ASSERT_GE(first, 0);
+  EXPECT_TRUE(waits_until([&] { return is_closed(first); }));
+  const TurnedAway crowd = server->turned_away();
+  EXPECT_EQ(crowd.count, 1U);
+  EXPECT_EQ(crowd.last.rfind("127.0.0.1:", 0), 0U) << crowd.last;
+  EXPECT_EQ(server->turned_away().count, 0U);
+  ::close(first);
+}
+
 }  // namespace
 }  // namespace gicodec::streaming

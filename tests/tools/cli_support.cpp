@@ -10,7 +10,7 @@ namespace {
 
 /// Pictures are not in every build.
 bool is_left_out(const std::vector<std::string>& arguments) {
-  return !kWithImages && arguments.front() == "preview";
+  return !kWithImages && !arguments.empty() && arguments.front() == "preview";
 }
 
 }  // namespace

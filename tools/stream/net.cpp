@@ -103,6 +103,8 @@ std::uintptr_t Net::tag(Link link) {
   return link.web != nullptr ? Web::tag(link.web) : Enet::tag(link.enet);
 }
 
+TurnedAway Net::turned_away() { return web_ ? web_->turned_away() : TurnedAway{}; }
+
 void Net::show(std::string metrics) {
   if (web_) web_->show(std::move(metrics));
 }

@@ -48,6 +48,8 @@ class Net {
   static void set_tag(Link link, std::uintptr_t tag);
   [[nodiscard]] static std::uintptr_t tag(Link link);
 
+  /// Connections to the port of WebSockets that were closed unheard since the last call.
+  [[nodiscard]] TurnedAway turned_away();
   /// Sets the metrics that the port of WebSockets shows.
   void show(std::string metrics);
   /// Reads the certificate again, for new connections. Throws tools::Error.

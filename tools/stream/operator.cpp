@@ -80,6 +80,11 @@ std::string Service::reload() {
 void Service::show() {
   if (!options_.web || now() - shown_ < kShow) return;
   shown_ = now();
+  if (const auto [turned_away, last] = net_.turned_away(); turned_away > 0) {
+    dropped_[Reason::full] += turned_away;
+    log("{} turned away, the last one {} (--max-per-address, --max-clients)",
+        count(turned_away, "connection"), last);
+  }
   net_.show(metrics_text({server_.connections().value_or({}).size(), connections_.size(),
                           server_.updates(), server_.memory(), access_->unheard(), dropped_,
                           statistics_.totals(server_)}));

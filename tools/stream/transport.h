@@ -63,6 +63,12 @@ struct NetEvent {
   bool final = false;  ///< closed: another attempt would fail the same way
 };
 
+/// Connections that were closed unheard, for lack of room or memory.
+struct TurnedAway {
+  std::uint64_t count = 0;
+  std::string last;  ///< its address
+};
+
 /// How a client authenticates its server.
 struct Trust {
   std::string ca;   ///< file of authorities; empty: the system's

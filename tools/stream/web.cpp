@@ -128,6 +128,11 @@ unsigned Web::round_trip_ms(const WebLink* link) { return link->round_trip_ms; }
 void Web::set_tag(WebLink* link, std::uintptr_t tag) { link->tag = tag; }
 std::uintptr_t Web::tag(const WebLink* link) { return link->tag; }
 
+TurnedAway Web::turned_away() {
+  const std::lock_guard lock(state_->mutex);
+  return std::exchange(state_->turned_away, {});
+}
+
 void Web::show(std::string metrics) {
   const std::lock_guard lock(state_->mutex);
   state_->shown = {std::move(metrics), now()};

@@ -35,6 +35,9 @@ class Web {
   /// Closes at once, without an event.
   void abandon(WebLink* link);
 
+  /// Those since the last call.
+  [[nodiscard]] TurnedAway turned_away();
+
   [[nodiscard]] std::uint16_t port() const;
   [[nodiscard]] static const std::string& host_of(const WebLink* link);
   [[nodiscard]] static const std::string& address_of(const WebLink* link);

@@ -28,6 +28,9 @@ void WebLoop::Loop::accept() {
     WebLink* const link = enter(peer);
     if (link == nullptr) {
       ::close(descriptor);
+      const std::lock_guard lock(state.mutex);
+      ++state.turned_away.count;
+      state.turned_away.last = std::move(peer.address);
       continue;
     }
     lws_adopt_desc_t adopted{};

@@ -61,6 +61,7 @@ struct WebState {
   std::vector<WebLink*> wanted;  ///< connections to begin
   TlsContext next_certificate;
   Shown shown;
+  TurnedAway turned_away;  ///< since the caller asked
 };
 
 }  // namespace gicodec::streaming
