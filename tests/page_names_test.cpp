@@ -123,7 +123,7 @@ class Tree {
                       extension == ".glsl" || extension == ".hlsl" || extension == ".cmake" ||
                       path.filename() == "CMakeLists.txt";
     const bool script = extension.empty() || extension == ".sh" || extension == ".py";
-    // NameSet of this test itself prove nothing.
+    // Names of this test itself prove nothing.
     if (path == fs::path(__FILE__) || path.filename() == "page_names_test.cpp") return;
     if (script) note_flags(read(path), true);
     if (!code) return;

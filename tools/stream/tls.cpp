@@ -18,7 +18,7 @@ namespace {
 using tools::Exit;
 using tools::fail;
 
-constexpr std::size_t kKeyDigest = 32;
+constexpr std::size_t kPinBytes = 32;
 
 /// The reason of OpenSSL's first error; clears the others.
 std::string last_error() {
@@ -36,9 +36,9 @@ TlsContext new_context() {
 }
 
 std::string digest_of(X509* certificate) {
-  std::array<unsigned char, kKeyDigest> digest{};
+  std::array<unsigned char, kPinBytes> digest{};
   unsigned size = 0;
-  if (X509_digest(certificate, EVP_sha256(), digest.data(), &size) != 1 || size != kKeyDigest)
+  if (X509_digest(certificate, EVP_sha256(), digest.data(), &size) != 1 || size != kPinBytes)
     return {};
   return {reinterpret_cast<const char*>(digest.data()), digest.size()};
 }
@@ -119,7 +119,7 @@ std::string parse_pin(const std::string& text) {
     if (c != ':') digits += c;  // openssl x509 -fingerprint writes colons.
   }
   const auto pin = from_hex(tools::lower_case(digits));
-  if (pin && pin->size() == kKeyDigest) return *pin;
+  if (pin && pin->size() == kPinBytes) return *pin;
   fail(Exit::usage,
        "--pin: expected sha256: and 64 hexadecimal digits, not \"{}\"; openssl x509 -noout "
        "-fingerprint -sha256 -in CERTIFICATE shows them",

@@ -35,7 +35,7 @@ class Web {
   /// Closes at once, without an event.
   void abandon(WebLink* link);
 
-  /// Those since the last call.
+  /// Connections that found no room since the last call.
   [[nodiscard]] TurnedAway turned_away();
 
   [[nodiscard]] std::uint16_t port() const;

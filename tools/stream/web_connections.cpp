@@ -27,10 +27,12 @@ void WebLoop::Loop::accept() {
     if (descriptor < 0) return;
     WebLink* const link = enter(peer);
     if (link == nullptr) {
+      {
+        const std::lock_guard lock(state.mutex);
+        ++state.turned_away.count;
+        state.turned_away.last = std::move(peer.address);
+      }
       ::close(descriptor);
-      const std::lock_guard lock(state.mutex);
-      ++state.turned_away.count;
-      state.turned_away.last = std::move(peer.address);
       continue;
     }
     lws_adopt_desc_t adopted{};
