@@ -492,6 +492,39 @@ TEST(ContainerPlayer, SeeksToWhatKeyframesGoBy) {
   }
 }
 
+/// Who reads over a network pays for each byte.
+TEST(ContainerPlayer, AFrameCostsItsOwnBytes) {
+  const TextureDesc desc = map_texture(Format::R8_UINT, {256, 256, 1}, {8, 8, 1});
+  TextureGroup group;
+  group.textures = {{"first", desc, {}, {}}, {"second", desc, {}, {}}};
+  ContainerDescription description;
+  ASSERT_EQ(add_volume(description, "volume", *texture_volume(std::span(&group, 1))), Status::ok);
+  MemorySink sink;
+  auto writer = *ContainerWriter::create(sink, description);
+  Bytes texels(static_cast<std::size_t>(texture_bytes(desc)), std::byte{7});
+  for (std::uint64_t frame = 0; frame < 4; ++frame) {
+    for (std::uint8_t t = 0; t < 2; ++t) {
+      auto encoder = *Encoder::create(desc, {.backend = "raw", .texture_id = t});
+      ASSERT_EQ(writer.add(frame, *encoder.encode(ConstTextureView(texels))), Status::ok);
+    }
+  }
+  ASSERT_EQ(writer.finish(), Status::ok);
+  GrowingSource source(sink.bytes, sink.bytes.size());
+  auto player = *ContainerPlayer::open(source);
+  EXPECT_LT(source.read_bytes, texels.size());
+  for (const std::uint64_t frame : {2, 1, 3}) {
+    ASSERT_EQ(player.seek(frame), Status::ok);
+    source.read_bytes = 0;
+    ASSERT_EQ(player.next(), Status::ok);
+    EXPECT_EQ(player.packets().size(), 2U);
+    EXPECT_LT(source.read_bytes, 2 * texels.size() + 1000) << "frame " << frame;
+  }
+  ASSERT_EQ(player.seek(0), Status::ok);
+  source.read_bytes = 0;
+  for (int frame = 0; frame < 4; ++frame) ASSERT_EQ(player.next(), Status::ok);
+  EXPECT_EQ(player.next(), Status::end);
+}
+
 /// After seek() nothing is left of what came later.
 TEST(ContainerPlayer, SeeksToBeforeATexture) {
   const TextureDesc desc = map_texture(Format::R8_UINT, {4, 4, 1}, {4, 4, 1});

@@ -16,7 +16,7 @@ const {values} = parseArgs({options: {
   modules: {type: 'string', default: join(top, 'build/wasm-modules')},
 }});
 const [out, folder] = [resolve(values.out), resolve(values.modules)];
-const ENTRIES = {index: 'index', encoder: 'encoder_entry', client: 'client_entry'};  // and their sources
+const ENTRIES = {index: 'index', encoder: 'encoder_entry', client: 'client_entry', three: 'three/index'};  // and their sources
 const BUILDS = [  // what is built at once
   {name: 'decode', modules: ['decoder', 'client'], options: ['-DGICODEC_DECODE_ONLY=ON', '-DGICODEC_CLIENT=ON']},
   {name: 'encode', modules: ['encoder'], options: []},
@@ -58,6 +58,7 @@ function literal(text) {
 const embedded = {
   name: 'gicodec',
   setup({onResolve, onLoad}) {
+    onResolve({filter: /^gicodec:entry\//}, ({path}) => ({path: `./${path.slice('gicodec:entry/'.length)}.js`, external: true}));
     onResolve({filter: /^gicodec:/}, ({path}) => ({path, namespace: 'gicodec'}));
     onLoad({filter: /^gicodec:module\//, namespace: 'gicodec'}, ({path}) => {
       const module = path.slice('gicodec:module/'.length);
@@ -73,7 +74,7 @@ async function bundle(name) {
   const {outputFiles: [{text}]} = await build({
     entryPoints: [join(here, 'src', `${name}.js`)], bundle: true, minify: name === 'worker', write: false,
     format: name === 'worker' ? 'iife' : 'esm', platform: 'neutral', target: 'es2022', charset: 'utf8',
-    legalComments: 'none', plugins: [embedded],
+    legalComments: 'none', external: ['three', 'three/*'], plugins: [embedded],
   });
   // Behind the bundler, which escapes more than a module in UTF-8 needs.
   return text.replace(/(['"`])@(\w+)\/(\w+)@\1/g, (_, quote, module, set) => literal(texts[module][set]));

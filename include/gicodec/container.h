@@ -162,6 +162,8 @@ class ContainerReader {
   /// file was cut off or is growing: all packets before are sound, and if the source can seek, a
   /// later call finds what was added. After any other error only seek() goes on.
   [[nodiscard]] Status next(ContainerPacket& packet);
+  /// The frame of the packet that next() will give, if the index lists it.
+  [[nodiscard]] std::optional<std::uint64_t> next_frame() noexcept;
 
   /// Limits next() to packets of these; it skips others without reading them if the index lists
   /// them. Empty: all packets. Errors: unknown_texture, unknown_region.

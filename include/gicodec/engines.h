@@ -121,6 +121,10 @@ struct EngineLayout {
   std::string_view summary;  ///< one line, for help
   GridUnit unit;
   Result<VolumeDesc> (*make)(Grid grid);
+  /// Where +x, +y and +z of the engine's world point (FORMAT.md, "Keys"), and the metres of its
+  /// unit. Empty and 0 where the engine leaves it open.
+  std::string_view axes;
+  double metres = 0;
 };
 /// All layouts, grouped by engine; static storage.
 [[nodiscard]] std::span<const EngineLayout> engine_layouts() noexcept;

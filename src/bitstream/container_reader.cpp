@@ -35,6 +35,7 @@ struct ContainerReader::State {
   /// Moves past unwanted packets that the index lists. Returns the packet at the new position, if
   /// the index lists it.
   std::optional<SeekEntry> follow_index();
+  std::optional<std::uint64_t> next_frame();
   Status next(ContainerPacket& packet);
   Status read_next(FileEntry& entry);
   Status seek(std::uint64_t frame);
@@ -121,6 +122,17 @@ Status ContainerReader::State::read_next(FileEntry& entry) {
   }
   const bool late = status == Status::ok && entry.is(EntryType::metadata);
   return late ? Status::corrupt : status;
+}
+
+std::optional<std::uint64_t> ContainerReader::State::next_frame() {
+  if (ended || !seekable) return std::nullopt;
+  if (const auto listed = follow_index()) return listed->frame;
+  const auto& packets = index.packets();
+  const auto at = std::lower_bound(
+      packets.begin(), packets.end(), position,
+      [](const SeekEntry& packet, std::uint64_t offset) { return packet.offset < offset; });
+  if (at == packets.end() || at->offset != position) return std::nullopt;
+  return at->frame;
 }
 
 Status ContainerReader::State::next(ContainerPacket& packet) {
@@ -232,6 +244,8 @@ Result<Metadata> ContainerReader::metadata(std::uint8_t texture_id) {
     return state.metadata.read(state.reader, texture_id);
   });
 }
+
+std::optional<std::uint64_t> ContainerReader::next_frame() noexcept { return state_->next_frame(); }
 
 Status ContainerReader::next(ContainerPacket& packet) {
   return guarded([&] { return state_->next(packet); });

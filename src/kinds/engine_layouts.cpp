@@ -54,27 +54,37 @@ Result<VolumeDesc> three_float32(Grid probes) {
 
 Result<VolumeDesc> godot(Grid texels) { return godot_lightmap_volume(texels); }
 
+constexpr std::string_view kYUp = "right up back", kUnity = "right up forward",
+                           kUnreal = "forward right up";
+
 constexpr std::array<EngineLayout, 15> kLayouts{{
-    {"paper", "Stengel et al.: A2R10G10B10 8+2, RG16F 16+2, atlases", GridUnit::probe,
-     paper_volume},
-    {"g3d", "G3D: A2B10G10R10 8+2, RG16F 16+2, offsets, atlases", GridUnit::probe, g3d_volume},
-    {"rtxgi", "RTXGI 1.3: A2B10G10R10 6+2, RG16F 14+2, probe data, arrays", GridUnit::probe, rtxgi},
-    {"rtxgi-float16", "RTXGI 1.3 with irradiance in RGBA16F", GridUnit::probe, rtxgi_float16},
+    {"paper", "Stengel et al.: A2R10G10B10 8+2, RG16F 16+2, atlases", GridUnit::probe, paper_volume,
+     kYUp, 1},
+    {"g3d", "G3D: A2B10G10R10 8+2, RG16F 16+2, offsets, atlases", GridUnit::probe, g3d_volume, kYUp,
+     1},
+    {"rtxgi", "RTXGI 1.3: A2B10G10R10 6+2, RG16F 14+2, probe data, arrays", GridUnit::probe, rtxgi,
+     "", 0},
+    {"rtxgi-float16", "RTXGI 1.3 with irradiance in RGBA16F", GridUnit::probe, rtxgi_float16, "",
+     0},
     {"rtxgi-float32", "RTXGI 1.3 with everything in floats of 32 bits", GridUnit::probe,
-     rtxgi_float32},
-    {"rtxgi-z-up", "RTXGI 1.3, left-handed and z-up as in Unreal", GridUnit::probe, rtxgi_z_up},
-    {"o3de", "O3DE: RGBA16F 6+2, RG32F 14+2, atlases", GridUnit::probe, o3de_volume},
-    {"flax", "Flax: B10G11R11 6+2, RG16F 14+2, probe data, atlases", GridUnit::probe, flax},
+     rtxgi_float32, "", 0},
+    {"rtxgi-z-up", "RTXGI 1.3, left-handed and z-up as in Unreal", GridUnit::probe, rtxgi_z_up,
+     kUnreal, 0.01},
+    {"o3de", "O3DE: RGBA16F 6+2, RG32F 14+2, atlases", GridUnit::probe, o3de_volume, "", 0},
+    {"flax", "Flax: B10G11R11 6+2, RG16F 14+2, probe data, atlases", GridUnit::probe, flax, kUnity,
+     0.01},
     {"unity-apv", "Unity APV: bricks of 4^3, L2, validity, sky occlusion", GridUnit::brick,
-     unity_apv},
-    {"unity-apv-l1", "Unity APV: bricks of 4^3, L1, validity", GridUnit::brick, unity_apv_l1},
+     unity_apv, kUnity, 1},
+    {"unity-apv-l1", "Unity APV: bricks of 4^3, L1, validity", GridUnit::brick, unity_apv_l1,
+     kUnity, 1},
     {"unreal-vlm", "Unreal volumetric lightmaps: bricks of 5^3, indirection", GridUnit::cell,
-     unreal_vlm},
-    {"bevy", "Bevy irradiance volumes: ambient cubes in E5B9G9R9", GridUnit::voxel, bevy_volume},
-    {"three", "three.js LightProbeGrid: harmonics in RGBA16F", GridUnit::probe, three},
+     unreal_vlm, kUnreal, 0.01},
+    {"bevy", "Bevy irradiance volumes: ambient cubes in E5B9G9R9", GridUnit::voxel, bevy_volume,
+     kYUp, 1},
+    {"three", "three.js LightProbeGrid: harmonics in RGBA16F", GridUnit::probe, three, kYUp, 1},
     {"three-float32", "three.js LightProbeGridWebGL: harmonics in RGBA32F", GridUnit::probe,
-     three_float32},
-    {"godot", "Godot LightmapGI: RGBA16F, four slices a layer", GridUnit::texel, godot},
+     three_float32, kYUp, 1},
+    {"godot", "Godot LightmapGI: RGBA16F, four slices a layer", GridUnit::texel, godot, kYUp, 1},
 }};
 
 }  // namespace

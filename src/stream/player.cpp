@@ -136,6 +136,14 @@ Status ContainerPlayer::State::read_ahead() {
   return Status::ok;
 }
 
+Status ContainerPlayer::State::read_ahead_within(std::uint64_t within) {
+  if (!next_packet && postponed == Status::ok) {
+    const auto listed = reader.next_frame();
+    if (listed && *listed > within) return Status::ok;
+  }
+  return read_ahead();
+}
+
 Status ContainerPlayer::State::gather() {
   if (!gathering) {
     packet_count = applied = 0;
@@ -155,7 +163,7 @@ Status ContainerPlayer::State::gather() {
       gathering = false;
       return room;
     }
-    const Status more = read_ahead();
+    const Status more = read_ahead_within(packets[0].frame);
     if (is_repeated(more)) return more;
     if (more != Status::ok) postponed = more;
   }
@@ -197,9 +205,9 @@ Status ContainerPlayer::State::advance(bool decoding) {
       if (status != Status::out_of_memory) ++applied;
       continue;
     }
-    const Status more = read_ahead();
+    const Status more = read_ahead_within(frame);
     if (is_repeated(more)) return more;
-    if (gathering || (more == Status::ok && next_packet->frame <= frame)) {
+    if (gathering || (next_packet && next_packet->frame <= frame)) {
       if (more != Status::ok) postponed = more;
       status = gather();
       continue;

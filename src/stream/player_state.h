@@ -22,6 +22,8 @@ struct ContainerPlayer::State {
   Status advance(bool decoding);
   /// Reads the next selected packet, of any frame, into `next_packet`, unless it is there.
   Status read_ahead();
+  /// The same, but for a packet that the index lists for a later frame.
+  Status read_ahead_within(std::uint64_t frame);
   /// Collects the packets of the frame of `next_packet`, in the order of application.
   Status gather();
   Status apply(const ContainerPacket& packet);

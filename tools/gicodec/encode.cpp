@@ -15,6 +15,7 @@
 #include "encode_volumes.h"
 #include "geometry_flags.h"
 #include "texture_roles.h"
+#include "world_flags.h"
 
 #include <gicodec/gicodec.h>
 
@@ -32,8 +33,7 @@ namespace gicodec::tools {
 namespace {
 
 constexpr const char* kEncodeFooter =
-    "Dumps are files NAME.FFFF.exr (or NAME_FFFF, NAME-FFFF, NAMEFFFF), or .dds, .ktx2 and .raw, "
-    "one\n"
+    "Dumps are files NAME.FFFF.exr (or NAME_FFFF, NAME-FFFF, NAMEFFFF), or .dds, .ktx2, .raw, one\n"
     "per texture and frame; a directory stands for all of them in it. PNG, TIFF and DPX are read\n"
     "where every sample is an exact code; they come back as EXR. A container of ours may be\n"
     "replaced, another file never. While it is being written the container is FILE.partial; one\n"
@@ -53,6 +53,7 @@ struct EncodeOptions {
   std::string output;
   std::vector<std::string> inputs;
   GeometryFlags geometry;
+  WorldFlags world;
   BackendFlags backend;
   std::vector<std::string> max_error;
   std::string inactive;
@@ -247,6 +248,7 @@ Described describe(const EncodeOptions& options, const std::vector<Lane>& lanes,
     description.textures[i].metadata = std::move(own.metadata);
   }
   description.metadata.emplace_back("creator", fmt::format("gicodec {}", kVersionString));
+  describe_world(options.world, options.geometry.layout, frames, description);
   // A container that was cut off can thus name its missing frames.
   description.metadata.emplace_back("frames", fmt::format("{}-{}", frames.front(), frames.back()));
   spread_metadata(described, frames.size(), output);
@@ -389,6 +391,7 @@ void add_encode(Cli& cli) {
   add_backend_flags(*command, options->backend);
   add_error_flag(*command, options->max_error, "LOSES BITS: how far texels may be off", "Coding");
   add_geometry_flags(*command, options->geometry);
+  add_world_flags(*command, options->world);
   add_number_flags(*command, options->geometry.numbers);
   command->callback(
       [&cli, options] { cli.run = [&cli, options] { return encode(*options, cli); }; });

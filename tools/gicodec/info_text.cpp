@@ -1,5 +1,6 @@
 // The report of gicodec info as text.
 #include "common/volume_words.h"
+#include "common/world.h"
 #include "container_report.h"
 
 #include <gicodec/voxels.h>
@@ -7,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 
 namespace gicodec::tools {
 namespace {
@@ -51,6 +53,17 @@ std::string rate_text(double bits_per_second) {
   return fmt::format("{:.2f} kbit/s", bits_per_second * 1e-3);
 }
 
+/// A line for each state, as far as a screen takes them.
+void print_states(const ContainerDescription& description) {
+  constexpr std::size_t kShown = 32;
+  const auto states = states_of(description.metadata);
+  for (const FrameState& state : std::span(states).first(std::min(states.size(), kShown))) {
+    print("  frame {}{}{}\n", state.frame, state.time ? fmt::format(" at {}", *state.time) : "",
+          state.name.empty() ? "" : ": " + state.name);
+  }
+  if (states.size() > kShown) print("  and {} more states\n", states.size() - kShown);
+}
+
 void print_totals(const ContainerReport& report) {
   const ContainerInput& input = report.input;
   const Totals& totals = report.totals;
@@ -64,6 +77,7 @@ void print_totals(const ContainerReport& report) {
   if (!scene.name.empty()) print("  scene {}\n", scene.name);
   if (scene.geometry != 0) print("  geometry of the scene {:016x}\n", scene.geometry);
   if (input.description().epoch != 0) print("  epoch {}\n", input.description().epoch);
+  print_states(input.description());
   if (totals.frames == 0) return;
   print("  ");
   if (totals.texture_bytes) {
@@ -114,6 +128,23 @@ std::string place_text(const TextureDesc& desc) {
   return fmt::format("grid {}", to_string(desc.grid));
 }
 
+/// "layout three, axes right up back (right-handed), a unit is 0.01 m, lights -4 0 -4 to 4 3 4".
+std::string world_text(const Place& place) {
+  std::vector<std::string> parts;
+  if (!place.layout.empty()) parts.push_back("layout " + place.layout);
+  if (!place.axes.empty()) {
+    parts.push_back(fmt::format("axes {} ({}-handed)", place.axes,
+                                is_right_handed(place.axes) ? "right" : "left"));
+  }
+  if (place.metres) parts.push_back(fmt::format("a unit is {} m", *place.metres));
+  if (place.bounds) {
+    const auto& box = *place.bounds;
+    parts.push_back(fmt::format("lights {} to {}", fmt::join(std::span(box).first(3), " "),
+                                fmt::join(std::span(box).last(3), " ")));
+  }
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
 void print_volume(const ContainerReport& report, std::size_t place) {
   const ContainerDescription& description = report.input.description();
   const VolumeEntry& volume = description.volumes[place];
@@ -141,6 +172,8 @@ void print_volume(const ContainerReport& report, std::size_t place) {
           fmt::format("{}", fmt::join(at.spacing, " ")),
           fmt::format("{}", fmt::join(at.scroll, " ")));
   }
+  const std::string world = world_text(place_of(volume.metadata));
+  if (!world.empty()) print("  {}\n", world);
   if (const std::string unknown = unknown_kind(description, place); !unknown.empty()) {
     print("  {}: its packets were checked, not decoded\n", unknown);
   }

@@ -8,6 +8,7 @@ const module = new Module('decoder', 'gicodec_player_next', texts);
 
 export {GicodecError} from './error.js';
 export {simd, supported} from './module.js';
+export {fetchRanges} from './ranges.js';
 
 /** Resolves once the module is compiled. Every call waits for it by itself. */
 export const {ready} = module;

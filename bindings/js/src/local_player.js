@@ -7,6 +7,9 @@ import {
   limits as limitsStruct, playerOptions,
 } from './interface.js';
 
+/** Bytes from which on those of a container that was read by ranges are dropped. */
+const MOST_HELD = 64 << 20;
+
 export class LocalPlayer {
   #instance;
   #player = 0;
@@ -14,6 +17,9 @@ export class LocalPlayer {
   #played = false;
   #selected = null;  // the textures that are played; null: all
   #head = [];  // the first bytes, which name the version
+  #size = null;  // of a container of which put() brings what is asked for
+  #sought = null;  // the frame that next() goes to
+  #last = null;    // the frame that it went to
 
   constructor(instance) {
     this.#instance = instance;
@@ -29,6 +35,40 @@ export class LocalPlayer {
     if (this.#head.length < 10) this.#head.push(...bytes.subarray(0, 10 - this.#head.length));
   }
 
+  /** Says that the container has that many bytes. Calls answer {missing: {offset, size}} for those to put(). */
+  begin(size) {
+    this.#size = BigInt(size);
+    this.#arrived = true;
+  }
+
+  /** Takes bytes of such a container. */
+  put(offset, chunk) {
+    const bytes = bytesOf(chunk);
+    const at = this.#instance.call('ranges_room', BigInt(offset), bytes.length) >>> 0;
+    if (at === 0) throw this.#instance.error(OUT_OF_MEMORY, 'bytes of the container');
+    this.#instance.bytes(at, bytes.length).set(bytes);
+    if (offset === 0) this.#head = [...bytes.subarray(0, 10)];
+  }
+
+  /** What body() returns or throws, unless it lacked bytes. */
+  #ranged(body) {
+    let missing = null;
+    const look = () => this.#instance.with((memory) => {
+      const at = memory.room(8);
+      const size = Number(this.#instance.call('ranges_missing', at));
+      if (size !== 0) missing = {missing: {offset: Number(this.#instance.array(BigUint64Array, at, 1)[0]), size}};
+    });
+    try {
+      const result = body();
+      if (this.#size !== null) look();
+      return missing ?? result;
+    } catch (error) {
+      if (this.#size !== null) look();
+      if (missing) return missing;
+      throw error;
+    }
+  }
+
   /** Says that these were all. */
   finish() {
     this.#arrived = true;
@@ -36,12 +76,20 @@ export class LocalPlayer {
   }
 
   /** Opens what has arrived; null: more bytes are needed. Returns what the container holds. */
-  open({limits, textures} = {}) {
+  open(options) {
+    // A player that lacks bytes is open where they are of the index alone.
+    if (this.#player) this.#instance.call('player_destroy', this.#player);
+    this.#player = 0;
+    return this.#ranged(() => this.#open(options));
+  }
+
+  #open({limits, textures} = {}) {
     const instance = this.#instance;
     const status = instance.with((memory) => {
       const options = memory.struct(playerOptions, {limits: limits && memory.struct(limitsStruct, limits)});
       const out = memory.room(4);
-      const got = instance.call('player_open', instance.call('source_arrived'), options, out);
+      const source = this.#size === null ? instance.call('source_arrived') : instance.call('ranges_source', this.#size);
+      const got = instance.call('player_open', source, options, out);
       this.#player = instance.word(out);
       return got;
     });
@@ -94,6 +142,24 @@ export class LocalPlayer {
 
   /** Applies the next frame and returns its number; null at the end, undefined: more bytes needed. */
   next() {
+    const frame = this.#ranged(() => this.#next());
+    if (this.#size === null || frame === null) return frame;
+    if (frame.missing) return this.#later(frame);
+    this.#last = frame;
+    this.#sought = null;
+    this.#instance.call('ranges_trim', MOST_HELD);
+    return frame;
+  }
+
+  /** Seeks the frame that next() did not reach, since the library goes on behind what failed. */
+  #later(missing) {
+    const frames = this.frames();
+    if (frames.missing) return frames;
+    const wanted = this.#sought ?? frames.find((frame) => this.#last === null || frame > this.#last);
+    return (wanted !== undefined && this.seek(wanted)) || missing;
+  }
+
+  #next() {
     const status = this.#instance.call('player_next', this.#player);
     if (status === END) return null;
     if (status === TRUNCATED && !this.#arrived) return undefined;
@@ -108,13 +174,16 @@ export class LocalPlayer {
   }
 
   seek(frame) {
-    this.#instance.check('player_seek', [this.#player, frameNumber(frame)], {what: `frame ${frame}`});
+    this.#sought = frame;
+    return this.#ranged(() => {
+      this.#instance.check('player_seek', [this.#player, frameNumber(frame)], {what: `frame ${frame}`});
+    });
   }
 
   /** The frames that can be sought: those that have arrived. */
   frames() {
-    return Array.from(this.#instance.listed(
-        BigUint64Array, 'player_frames', [this.#player], {what: 'the index of the frames'}), Number);
+    return this.#ranged(() => Array.from(this.#instance.listed(
+        BigUint64Array, 'player_frames', [this.#player], {what: 'the index of the frames'}), Number));
   }
 
   /** A texture as of this frame, guard bands included: a typed array, `into` if given. */

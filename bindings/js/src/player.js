@@ -4,6 +4,9 @@ import {checkOptions, checkResponse} from './error.js';
 import {bytesOf} from './instance.js';
 import {place, useWorkers} from './workers.js';
 
+/** Bytes that are read at once of a container that is read in parts: at first, and at most. */
+const FIRST_PART = 64 << 10, MOST_PART = 4 << 20;
+
 /** Frees in workers what the page has dropped. */
 const dropped = new FinalizationRegistry((host) => host.close());
 
@@ -12,6 +15,8 @@ export class Player {
   #host;
   #reader = null;   // of what has not arrived yet
   #owned = false;   // its chunks are nobody else's
+  #ranges = null;   // {size, read} of a container that is read in parts
+  #part = FIRST_PART;  // bytes to read at once
   #signal;
   #turn = Promise.resolve();
   #from = '';  // what the server says of its response
@@ -31,7 +36,7 @@ export class Player {
     try {
       await player.#begin(await player.#abortable(Promise.resolve(source)));
       for (;;) {
-        const container = await player.#call('open', [{limits, textures}]);
+        const container = await player.#ask('open', [{limits, textures}]);
         if (container) return Object.assign(player, container);
         await player.#more();
       }
@@ -58,7 +63,10 @@ export class Player {
       this.#owned = true;
       source = source.stream();
     }
-    if (typeof source.getReader === 'function') {
+    if (typeof source.read === 'function' && Number.isSafeInteger(source.size)) {
+      this.#ranges = source;
+      await this.#call('begin', [source.size]);
+    } else if (typeof source.getReader === 'function') {
       const reader = source.getReader();
       this.#reader = {next: () => reader.read(), cancel: (why) => reader.cancel(why)};
     } else if (typeof source[Symbol.asyncIterator] === 'function') {  // a stream of Node
@@ -90,6 +98,27 @@ export class Player {
     if (!done) return;
     this.#reader = null;
     await this.#call('finish', []);
+  }
+
+  /** Calls a method until it has all bytes that it needs. */
+  async #ask(method, values) {
+    for (this.#part = FIRST_PART;; this.#part = Math.min(2 * this.#part, MOST_PART)) {
+      const result = await this.#call(method, values);
+      if (!result?.missing) return result;
+      await this.#bring(result.missing);
+    }
+  }
+
+  /** Reads the bytes that were missing, and some around them. */
+  async #bring({offset, size}) {
+    const {size: total} = this.#ranges;
+    const last = Math.min(total, offset + Math.max(size, this.#part));
+    const first = last < total ? offset : Math.max(0, Math.min(offset, total - this.#part));
+    const bytes = bytesOf(await this.#abortable(this.#ranges.read(first, last - first)));
+    if (bytes.length !== last - first) {
+      throw new TypeError(`the source of the container brings ${bytes.length} bytes from ${first} on, not ${last - first}`);
+    }
+    await this.#call('put', [first, bytes]);
   }
 
   #next = null;  // what was asked of the reader and has not come
@@ -133,7 +162,7 @@ export class Player {
   next() {
     return this.#inTurn(async () => {
       for (;;) {
-        const frame = await this.#call('next', []);
+        const frame = await this.#ask('next', []);
         if (frame !== undefined) return frame;
         await this.#more();
       }
@@ -147,12 +176,12 @@ export class Player {
 
   /** The next next() applies that frame. Of a stream: one that has arrived. */
   seek(frame) {
-    return this.#inTurn(() => this.#call('seek', [frame]));
+    return this.#inTurn(() => this.#ask('seek', [frame]));
   }
 
   /** The numbers of the frames that can be sought; of a stream: those that have arrived. */
   frames() {
-    return this.#inTurn(() => this.#call('frames', []));
+    return this.#inTurn(() => this.#ask('frames', []));
   }
 
   /**

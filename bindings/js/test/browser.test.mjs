@@ -1,33 +1,27 @@
 // Pages in Chromium: as a browser loads the package, and as bundlers make it.
 import assert from 'node:assert/strict';
 import {createHash} from 'node:crypto';
-import {createReadStream, existsSync, mkdirSync, mkdtempSync, rmSync, writeFileSync} from 'node:fs';
-import {createServer} from 'node:http';
-import {createRequire} from 'node:module';
+import {mkdirSync, mkdtempSync, rmSync, writeFileSync} from 'node:fs';
 import {tmpdir} from 'node:os';
-import {dirname, extname, join, normalize} from 'node:path';
+import {dirname, join} from 'node:path';
 import {after, before, test} from 'node:test';
-import {fileURLToPath, pathToFileURL} from 'node:url';
+import {fileURLToPath} from 'node:url';
 
 import {open} from 'gicodec';
 
+import {launch, project, serve, tool} from './browser_support.mjs';
 import {bytes, golden} from './support.mjs';
 
-const here = dirname(fileURLToPath(import.meta.url));
-const project = dirname(here);
-// Bundlers and the browser's driver are no part of the project that uses the package.
-const tools = createRequire(join(process.env.GICODEC_JS_TOOLS, 'package.json'));
-const tool = (name) => import(pathToFileURL(tools.resolve(name)));
 const FILE = 'native_strong.gic';
-const TYPES = {'.js': 'text/javascript', '.html': 'text/html', '.gic': 'application/octet-stream', '.wasm': 'application/wasm'};
-const entry = join(here, 'page.js');
+const entry = join(dirname(fileURLToPath(import.meta.url)), 'page.js');
 const root = mkdtempSync(join(tmpdir(), 'gicodec-pages-'));
 let browser, server, expected;
 
 const BUNDLERS = {
   async plain(folder) {
-    const imports = Object.fromEntries(['index', 'encoder', 'client'].map((name) =>
+    const imports = Object.fromEntries(['index', 'encoder', 'client', 'three'].map((name) =>
       [name === 'index' ? 'gicodec' : `gicodec/${name}`, `/node_modules/gicodec/${name}.js`]));
+    imports.three = '/node_modules/three/build/three.module.js';
     return `<script type="importmap">${JSON.stringify({imports})}</script><script type=module src="/test/page.js"></script>`;
   },
   async esbuild(folder) {
@@ -70,22 +64,13 @@ before(async () => {
       expected.push(`${frame} ${i} ${Array.from(digest.subarray(0, 8)).join(',')}`);
     }
   }
-  server = createServer(({url}, response) => {
-    const path = normalize(new URL(url, 'http://localhost').pathname);
-    const file = [join(root, path), join(project, path)].find((one) => existsSync(one) && extname(one));
-    response.writeHead(file ? 200 : 404, {'content-type': TYPES[extname(path)] ?? 'text/plain'});
-    if (file) createReadStream(file).pipe(response);
-    else response.end();
-  });
-  await new Promise((resolve) => server.listen(0, '127.0.0.1', resolve));
-  const {default: puppeteer} = await tool('puppeteer-core');
-  browser = await puppeteer.launch({executablePath: '/usr/bin/chromium', args: [
-    '--no-sandbox', '--disable-background-networking', '--disable-component-update', '--disable-sync', '--no-first-run']});
+  server = await serve({}, [root, project]);
+  browser = await launch();
 });
 
 after(async () => {
   await browser?.close();
-  server?.close();
+  await server?.close();
   rmSync(root, {recursive: true, force: true});
 });
 
@@ -99,12 +84,13 @@ for (const [name, build] of Object.entries(BUNDLERS)) {
     const page = await browser.newPage();
     const errors = [];
     page.on('pageerror', (error) => errors.push(error.message));
-    await page.goto(`http://127.0.0.1:${server.address().port}/${name}/index.html`);
+    await page.goto(`${server.origin}/${name}/index.html`);
     await page.waitForFunction('window.result', {timeout: 20000});
-    const {here: ours, there, packet, hello} = await page.evaluate('window.result');
+    const {loaded, here: ours, there, packet, hello} = await page.evaluate('window.result');
     assert.deepEqual(ours, expected);
     assert.deepEqual(there, expected);
     assert.ok(packet > 0 && hello > 0);
+    assert.match(loaded, /no volume of a layout that GILoader shows/);
     assert.deepEqual(errors, []);
     await page.close();
   });

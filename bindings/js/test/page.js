@@ -2,6 +2,7 @@
 import {open, useWorkers} from 'gicodec';
 import {Client} from 'gicodec/client';
 import {Encoder, mapTexture} from 'gicodec/encoder';
+import {GILoader} from 'gicodec/three';
 
 async function played(player) {
   const found = [];
@@ -23,5 +24,6 @@ window.result = (async () => {
   const desc = await mapTexture([32, 32], 'R16_SFLOAT');
   const encoder = await Encoder.create(desc);
   const client = await Client.create();
-  return {here, there, packet: encoder.encode(new Uint16Array(1024)).length, hello: client.hello().length};
+  const loaded = await new GILoader().loadAsync(file).catch(({message}) => message);  // not one of three.js
+  return {loaded, here, there, packet: encoder.encode(new Uint16Array(1024)).length, hello: client.hello().length};
 })();

@@ -1,10 +1,13 @@
 // What the tests share. They run in a project that installed the package; GICODEC_SOURCE names the
 // source tree, which has the golden files.
-import {readFileSync} from 'node:fs';
+import {existsSync, readFileSync} from 'node:fs';
 import {join} from 'node:path';
 
 export const SOURCE = process.env.GICODEC_SOURCE;
 export const golden = (name) => new Uint8Array(readFileSync(join(SOURCE, 'tests/golden', name)));
+
+/** The path of a program of the build. */
+export const program = (name) => process.env.GICODEC_PROGRAMS.split(':').map((folder) => join(folder, name)).find(existsSync);
 
 /** Numbers as random as a test needs, the same in each run. */
 export function* randomWords(seed = 1) {

@@ -2,6 +2,9 @@
 import {Decoder, GicodecError, open, peek, ready, useWorkers, type Player, type Texels} from 'gicodec';
 import {connect, type ClientVolume} from 'gicodec/client';
 import {Encoder, Writer, ddgiIrradiance, volumeOfLayout, type VolumeDesc} from 'gicodec/encoder';
+import {GILoader, captureLightProbeGrid, saveLightProbeGrid} from 'gicodec/three';
+import type {Scene, WebGLRenderer} from 'three';
+import type {OwnBytes} from 'gicodec';
 
 export async function play(file: File): Promise<Texels> {
   await ready;
@@ -36,4 +39,19 @@ export async function follow(url: string, signal: AbortSignal): Promise<string> 
 
 function draw(room: ClientVolume | undefined): void {
   console.log(room?.texels('color').byteLength, room?.geometry.grid);
+}
+
+export async function light(scene: Scene, renderer: WebGLRenderer): Promise<OwnBytes> {
+  const loader = new GILoader().detectSupport(renderer).setWorkerLimit(1);
+  loader.setPath('light/').setRequestHeader({authorization: 'x'});
+  const grid = await loader.loadAsync('room.gic', ({loaded, total}) => console.log(loaded / total));
+  scene.add(grid);
+  if ('states' in grid) {
+    grid.state = 12.5;
+    await grid.setState(grid.states[0]?.name ?? 'noon');
+    // @ts-expect-error: a state is a number or a name
+    grid.state = null;
+    return saveLightProbeGrid(renderer, [await captureLightProbeGrid(renderer, grid)], {states: [{time: 6}]});
+  }
+  return new Uint8Array();
 }

@@ -20,7 +20,19 @@ export interface ContainerTexture extends Texture {
   metadata: Record<string, string>;
 }
 
-export type Source = Response | Blob | Bytes | ReadableStream<Uint8Array> | AsyncIterable<Uint8Array>;
+/** A container of which open() reads what it needs. */
+export interface RangeSource {
+  /** Bytes of the container. */
+  readonly size: number;
+  read(offset: number, size: number): Promise<Bytes> | Bytes;
+}
+/**
+ * Asks a server for a file: what open() reads in parts where the server sends parts, else its response.
+ * `open(fetchRanges(url))` goes to any frame of a large file without the others.
+ */
+export function fetchRanges(url: string | URL, init?: RequestInit): Promise<RangeSource | Response>;
+
+export type Source = RangeSource | Response | Blob | Bytes | ReadableStream<Uint8Array> | AsyncIterable<Uint8Array>;
 
 export interface PlayerOptions {
   limits?: Limits;

@@ -5,6 +5,10 @@ set(decoder_exports
   free
   gicodec_source_grow
   gicodec_source_arrived
+  gicodec_ranges_source
+  gicodec_ranges_room
+  gicodec_ranges_missing
+  gicodec_ranges_trim
   gicodec_status_text
   gicodec_version_text
   gicodec_format_from_name
@@ -36,6 +40,7 @@ set(decoder_exports
   gicodec_container_json
   gicodec_player_open
   gicodec_container_version
+  gicodec_player_destroy
   gicodec_player_container
   gicodec_player_select
   gicodec_player_next

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <utility>
 
 #include "layout.inl"
 
@@ -38,6 +39,64 @@ std::uint64_t size(void*) { return arrived.size; }
 
 constexpr gicodec_source kSource{sizeof(gicodec_source), nullptr, read, seek, size};
 
+/// Bytes of a container from an offset on.
+struct Piece {
+  std::uint64_t offset;
+  std::size_t size;
+  std::uint8_t* bytes;
+};
+
+/// A container of which pieces are there: the caller brings those that reads miss.
+struct {
+  Piece* pieces;
+  std::size_t count, capacity;
+  std::size_t held;  ///< bytes of all pieces
+  std::uint64_t size, at;
+  std::uint64_t missing_at, missing_size;  ///< what the first failed read lacks; 0: none failed
+} ranges;
+
+const Piece* piece_at(std::uint64_t offset) {
+  Piece* const end = ranges.pieces + ranges.count;
+  Piece* const found = std::find_if(ranges.pieces, end, [&](const Piece& piece) {
+    return offset >= piece.offset && offset - piece.offset < piece.size;
+  });
+  return found == end ? nullptr : found;
+}
+
+gicodec_status read_ranges(void*, void* into, std::size_t bytes, std::size_t* got) {
+  const auto wanted =
+      static_cast<std::size_t>(std::min<std::uint64_t>(bytes, ranges.size - ranges.at));
+  for (*got = 0; *got < wanted;) {
+    const std::uint64_t at = ranges.at + *got;
+    const Piece* const piece = piece_at(at);
+    if (piece == nullptr) {
+      if (ranges.missing_size == 0) {
+        ranges.missing_at = at;
+        ranges.missing_size = wanted - *got;
+      }
+      *got = 0;
+      return GICODEC_IO_FAILED;
+    }
+    const auto skipped = static_cast<std::size_t>(at - piece->offset);
+    const std::size_t part = std::min(wanted - *got, piece->size - skipped);
+    std::memcpy(static_cast<std::uint8_t*>(into) + *got, piece->bytes + skipped, part);
+    *got += part;
+  }
+  ranges.at += wanted;
+  return GICODEC_OK;
+}
+
+gicodec_status seek_ranges(void*, std::uint64_t offset) {
+  if (offset > ranges.size) return GICODEC_IO_FAILED;
+  ranges.at = offset;
+  return GICODEC_OK;
+}
+
+std::uint64_t size_of_ranges(void*) { return ranges.size; }
+
+constexpr gicodec_source kRanges{sizeof(gicodec_source), nullptr, read_ranges, seek_ranges,
+                                 size_of_ranges};
+
 }  // namespace
 
 extern "C" {
@@ -62,6 +121,42 @@ std::uint8_t* gicodec_source_grow(std::size_t bytes) {
 const gicodec_source* gicodec_source_arrived() {
   arrived.at = 0;
   return &kSource;
+}
+
+/// The same of a container of that many bytes, none of which are there.
+const gicodec_source* gicodec_ranges_source(std::uint64_t size) {
+  ranges.size = size;
+  ranges.at = 0;
+  return &kRanges;
+}
+
+/// Memory for bytes from an offset on, which the caller fills; null if there is none.
+std::uint8_t* gicodec_ranges_room(std::uint64_t offset, std::size_t bytes) {
+  if (ranges.count == ranges.capacity) {
+    const std::size_t capacity = 16 + 2 * ranges.capacity;
+    void* const moved = std::realloc(ranges.pieces, capacity * sizeof(Piece));
+    if (moved == nullptr) return nullptr;
+    ranges.pieces = static_cast<Piece*>(moved);
+    ranges.capacity = capacity;
+  }
+  auto* const room = static_cast<std::uint8_t*>(std::malloc(bytes));
+  if (room == nullptr) return nullptr;
+  ranges.pieces[ranges.count++] = {offset, bytes, room};
+  ranges.held += bytes;
+  return room;
+}
+
+/// Drops all pieces if they have more bytes than that together.
+void gicodec_ranges_trim(std::size_t most) {
+  if (ranges.held <= most) return;
+  while (ranges.count > 0) std::free(ranges.pieces[--ranges.count].bytes);
+  ranges.held = 0;
+}
+
+/// What the first read lacked that failed since the last call; 0: none failed.
+std::uint64_t gicodec_ranges_missing(std::uint64_t* offset) {
+  *offset = ranges.missing_at;
+  return std::exchange(ranges.missing_size, 0);
 }
 
 }  // extern "C"

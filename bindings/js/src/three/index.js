@@ -1,0 +1,3 @@
+// The entry "gicodec/three": containers as objects of three.js.
+export {GILoader} from './loader.js';
+export {captureLightProbeGrid, saveLightProbeGrid} from './save.js';

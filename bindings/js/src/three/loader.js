@@ -1,0 +1,149 @@
+// GILoader: containers as objects of a scene.
+import {Group, Loader} from 'three';
+import {fetchRanges, open, useWorkers} from 'gicodec:entry/index';
+
+import {makeProbeGrid} from './probe_grid.js';
+import {States} from './states.js';
+
+const THREE_LAYOUTS = ['three', 'three-float32'];
+
+/** Loads containers (.gic). */
+export class GILoader extends Loader {
+  #webgpu = false;
+  #filtersFloat = true;
+  #workers = null;
+  #ended = new AbortController();
+  /** Turns textures of float to half, which loses bits. */
+  half = false;
+
+  /** Says for which renderer objects are made: without it, for WebGLRenderer on a desktop. */
+  detectSupport(renderer) {
+    this.#webgpu = renderer.isWebGPURenderer === true;
+    this.#filtersFloat = this.#webgpu ? renderer.hasFeature('float32-filterable')
+                                      : renderer.extensions.has('OES_texture_float_linear');
+    return this;
+  }
+
+  /** Decodes in that many workers, whatever loads; 0: on the page's thread. */
+  setWorkerLimit(count) {
+    this.#workers = useWorkers(count);
+    this.#workers.catch(() => {});
+    return this;
+  }
+
+  load(url, onLoad, onProgress, onError) {
+    const address = this.manager.resolveURL((this.path ?? '') + url);
+    this.manager.itemStart(address);
+    this.#fetch(address, onProgress ?? (() => {})).then((source) => this.#make(source)).then((object) => {
+      onLoad?.(object);
+      this.manager.itemEnd(address);
+    }, (error) => {
+      if (onError) onError(error);
+      else console.error(error);
+      this.manager.itemError(address);
+      this.manager.itemEnd(address);
+    });
+  }
+
+  /** Makes objects of a container's bytes, or anything else that open() takes. */
+  parse(source, onLoad, onError) {
+    const made = this.#make(source);
+    if (onLoad || onError) made.then(onLoad, onError);
+    return made;
+  }
+
+  abort() {
+    this.#ended.abort();
+    this.#ended = new AbortController();
+    return this;
+  }
+
+  /** Ends what loads. Objects that were made end with their own dispose(). */
+  dispose() {
+    this.abort();
+  }
+
+  async #fetch(url, onProgress) {
+    let loaded = 0;
+    const tell = (bytes, total) => {
+      loaded += bytes;
+      onProgress(new ProgressEvent('progress', {lengthComputable: total > 0, loaded, total}));
+    };
+    const source = await fetchRanges(url, {
+      headers: {...this.requestHeader}, credentials: this.withCredentials ? 'include' : 'same-origin',
+      signal: this.#ended.signal,
+    });
+    if (!(source instanceof Response)) {
+      return {...source, async read(offset, size) {
+        const bytes = await source.read(offset, size);
+        tell(bytes.length, source.size);
+        return bytes;
+      }};
+    }
+    if (!source.ok || !source.body) return source;  // open() says what is wrong with it
+    const total = Number(source.headers.get('content-length') ?? 0);
+    const counted = source.body.pipeThrough(new TransformStream({transform(chunk, controller) {
+      tell(chunk.length, total);
+      controller.enqueue(chunk);
+    }}));
+    return Object.assign(counted, {whole: source.url || url});
+  }
+
+  async #make(source) {
+    await this.#workers;
+    const player = await open(source, {signal: this.#ended.signal});
+    try {
+      if (source?.whole) await this.#all(player);
+      return await this.#objects(player, source?.whole);
+    } catch (error) {
+      player.close();
+      throw error;
+    }
+  }
+
+  /** Plays a stream to its end, since it can be sought where it has arrived. */
+  async #all(player) {
+    while (await player.next() !== null);
+  }
+
+  async #objects(player, whole) {
+    const known = player.volumes.map((volume) => ({volume, layout: volume.metadata['gicodec:layout'] ?? ''}))
+        .filter(({layout}) => THREE_LAYOUTS.includes(layout));
+    if (known.length === 0) {
+      const layouts = player.volumes.map(({metadata}) => metadata['gicodec:layout'] ?? 'none').join(', ');
+      throw new TypeError(`the container has no volume of a layout that GILoader shows (its layouts: ${layouts}): ` +
+                          'gicodec encode --layout three says that textures are a LightProbeGrid');
+    }
+    const frames = await player.frames();
+    if (frames.length === 0) throw new RangeError('the container has no frames');
+    if (whole && frames.length > 1) {
+      console.info(`GILoader: the server of ${whole} sends no parts of files, so all states are loaded at once`);
+    }
+    const states = new States(player, frames, known.map(({volume}) => volume.firstTexture));
+    const release = states.use();
+    const objects = [];
+    try {
+      for (const {volume} of known) objects.push(await this.#grid(states, player, volume));
+    } catch (error) {
+      objects.forEach((object) => object.dispose());
+      throw error;
+    } finally {
+      release();
+    }
+    if (objects.length === 1) return objects[0];
+    return new Group().add(...objects);
+  }
+
+  async #grid(states, player, volume) {
+    const place = volume.firstTexture, texture = player.textures[place];
+    const isHalf = texture.ArrayType === Uint16Array;
+    const half = !isHalf && (this.half || !this.#filtersFloat);
+    if (half && !this.half) {
+      console.info('GILoader: this device cannot filter textures of float, so they become half, which loses bits');
+    }
+    const Grid = this.#webgpu
+      ? (await import('three/addons/lighting/LightProbeGrid.js')).LightProbeGrid
+      : (await import('three/addons/lighting/LightProbeGridWebGL.js')).LightProbeGridWebGL;
+    return makeProbeGrid(states, volume, texture, place, {Grid, half});
+  }
+}

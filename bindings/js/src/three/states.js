@@ -1,0 +1,93 @@
+// The states of a container: frames with times and names, decoded when they are asked for.
+
+/** Frames that stay decoded: two are blended. */
+const KEPT = 2;
+
+/** What metadata says of a container's frames (FORMAT.md, "Keys"), by ascending frame. */
+export function statesOf({metadata}, frames) {
+  const said = (metadata['gicodec:states'] ?? '').split('\n').map((line) => /^(\d+) (\S+) (.*)$/.exec(line));
+  const named = new Map(said.filter(Boolean).map(([, frame, time, name]) => [Number(frame), {time: Number(time), name}]));
+  const [start, fps] = [Number(metadata.start), Number(metadata.fps)];
+  const known = Number.isFinite(start) && fps > 0;
+  return frames.map((frame) => {
+    const {time = NaN, name = ''} = named.get(frame) ?? {};
+    const usual = named.size > 0 ? null : known ? start + frame / fps : frame;
+    return {frame, time: Number.isFinite(time) ? time : usual, name};
+  });
+}
+
+/** Between which states a time lies, or which one a name has: {first, second, part} of frames. */
+export function placeOfState(states, wanted) {
+  if (typeof wanted === 'string') {
+    const found = states.find(({name}) => name === wanted);
+    if (found) return {first: found.frame, second: found.frame, part: 0};
+    const names = states.map(({name}) => name).filter(Boolean);
+    throw new RangeError(`there is no state ${JSON.stringify(wanted)}: ` +
+                         `${names.length ? names.map((name) => JSON.stringify(name)).join(', ') + ' are' : 'none has a name'}`);
+  }
+  const timed = states.filter(({time}) => time !== null).sort((a, b) => a.time - b.time);
+  if (!Number.isFinite(wanted) || timed.length === 0) {
+    throw new RangeError(`a state is a name or a time, not ${wanted}${timed.length ? '' : ': these states have names alone'}`);
+  }
+  const after = timed.findIndex(({time}) => time >= wanted);
+  if (after <= 0) {
+    const {frame} = timed.at(after);  // before the first, or after the last
+    return {first: frame, second: frame, part: 0};
+  }
+  const [a, b] = [timed[after - 1], timed[after]];
+  const part = (wanted - a.time) / (b.time - a.time);
+  return part === 1 ? {first: b.frame, second: b.frame, part: 0} : {first: a.frame, second: b.frame, part};
+}
+
+/** Decodes frames of a player, which several objects share. */
+export class States {
+  #player;
+  #textures;
+  #frames;
+  #last = null;
+  #kept = new Map();
+  #turn = Promise.resolve();
+  #users = 0;
+
+  /** `textures`: the numbers of those that are read. */
+  constructor(player, frames, textures) {
+    this.#player = player;
+    this.#frames = frames;
+    this.#textures = textures;
+    this.all = statesOf(player, frames);
+  }
+
+  /** The textures of a frame by number, as typed arrays that nobody changes. */
+  frame(frame) {
+    let kept = this.#kept.get(frame);
+    this.#kept.delete(frame);
+    if (!kept) {
+      kept = this.#turn.then(() => this.#decode(frame));
+      this.#turn = kept.catch(() => this.#kept.delete(frame));
+    }
+    this.#kept.set(frame, kept);  // behind those that were asked for earlier
+    for (const old of this.#kept.keys()) {
+      if (this.#kept.size > KEPT) this.#kept.delete(old);
+    }
+    return kept;
+  }
+
+  async #decode(frame) {
+    const next = this.#frames[this.#frames.indexOf(this.#last) + 1];
+    if (this.#last === null || next !== frame) await this.#player.seek(frame);
+    this.#last = null;
+    await this.#player.next();
+    this.#last = frame;
+    const textures = new Map();
+    for (const texture of this.#textures) textures.set(texture, await this.#player.read(texture));
+    return textures;
+  }
+
+  /** Says that an object uses this; the call that it returns says that it no longer does. */
+  use() {
+    ++this.#users;
+    return () => {
+      if (--this.#users === 0) this.#player.close();
+    };
+  }
+}

@@ -1,0 +1,85 @@
+// What tests in browsers share: Debian's Chromium, and a server of files that sends parts of them.
+import {existsSync, mkdtempSync, readFileSync, rmSync, statSync, writeFileSync} from 'node:fs';
+import {spawn} from 'node:child_process';
+import {createServer} from 'node:http';
+import {createRequire} from 'node:module';
+import {tmpdir} from 'node:os';
+import {dirname, extname, join, normalize} from 'node:path';
+import {fileURLToPath, pathToFileURL} from 'node:url';
+
+export const project = dirname(dirname(fileURLToPath(import.meta.url)));
+// Bundlers and the browser's driver are no part of the project that uses the package.
+const tools = createRequire(join(process.env.GICODEC_JS_TOOLS, 'package.json'));
+export const tool = (name) => import(pathToFileURL(tools.resolve(name)));
+
+const TYPES = {'.js': 'text/javascript', '.html': 'text/html', '.gic': 'application/octet-stream', '.wasm': 'application/wasm'};
+const QUIET = ['--no-sandbox', '--disable-background-networking', '--disable-component-update', '--disable-sync', '--no-first-run'];
+
+export async function launch(flags = []) {
+  const {default: puppeteer} = await tool('puppeteer-core');
+  return puppeteer.launch({executablePath: '/usr/bin/chromium', args: [...QUIET, ...flags]});
+}
+
+/**
+ * Serves texts and bytes by path, and files of these folders: {origin, put(path, body), log, parts, close()}.
+ * `log` has what was sent, `parts` says whether parts of files are.
+ */
+export async function serve(bodies = {}, folders = [project]) {
+  const state = {log: [], parts: true};
+  const made = new Map(Object.entries(bodies));
+  const server = createServer(({url, headers}, response) => {
+    const path = normalize(new URL(url, 'http://localhost').pathname);
+    const file = folders.map((folder) => join(folder, path)).find((one) => existsSync(one) && statSync(one).isFile());
+    const body = made.get(path) ?? (file ? readFileSync(file) : null);
+    if (body === null) return response.writeHead(404).end();
+    const all = Buffer.from(body);
+    const range = state.parts && /^bytes=(\d+)-(\d+)$/.exec(headers.range ?? '');
+    const [first, last] = range ? [Number(range[1]), Math.min(Number(range[2]), all.length - 1)] : [0, all.length - 1];
+    state.log.push({path, first, size: last - first + 1});
+    response.writeHead(range ? 206 : 200, {
+      'content-type': TYPES[extname(path)] ?? 'text/plain', 'content-length': last - first + 1, 'cache-control': 'no-store',
+      ...(range ? {'content-range': `bytes ${first}-${last}/${all.length}`} : {}),
+    }).end(all.subarray(first, last + 1));
+  });
+  await new Promise((resolve) => server.listen(0, '127.0.0.1', resolve));
+  return Object.assign(state, {
+    origin: `http://127.0.0.1:${server.address().port}`,
+    put: (path, body) => made.set(path, body),
+    close: () => new Promise((resolve) => { server.close(resolve); server.closeAllConnections(); }),
+  });
+}
+
+/** nginx with bodies by path and the files of the project: {origin, log(), close()}. */
+export async function serveByNginx(bodies, port = 20000 + process.pid % 20000) {
+  const folder = mkdtempSync(join(tmpdir(), 'gicodec-nginx-'));
+  for (const [path, body] of Object.entries(bodies)) writeFileSync(join(folder, path), body);
+  const types = Object.entries(TYPES).map(([ending, type]) => `${type} ${ending.slice(1)};`).join(' ');
+  writeFileSync(join(folder, 'nginx.conf'), `
+    daemon off; master_process off; pid ${folder}/pid; error_log ${folder}/error.log;
+    events {}
+    http {
+      types { ${types} }
+      log_format sent '$status $uri $body_bytes_sent'; access_log ${folder}/access.log sent;
+      ${['client_body', 'proxy', 'fastcgi', 'uwsgi', 'scgi'].map((one) => `${one}_temp_path ${folder}/${one};`).join(' ')}
+      server { listen 127.0.0.1:${port}; root ${folder}; location ~ ^/(node_modules|test)/ { root ${project}; } }
+    }`);
+  const nginx = spawn('nginx', ['-c', join(folder, 'nginx.conf'), '-p', folder], {stdio: 'inherit'});
+  const origin = `http://127.0.0.1:${port}`;
+  for (let tries = 0; ; ++tries) {
+    const there = await fetch(`${origin}/`).then(() => true, () => false);
+    if (there) break;
+    if (tries === 100 || nginx.exitCode !== null) throw new Error('nginx does not start');
+    await new Promise((resolve) => setTimeout(resolve, 50));
+  }
+  return {
+    origin,
+    log: () => readFileSync(join(folder, 'access.log'), 'utf8').trim().split('\n').map((line) => {
+      const [status, path, size] = line.split(' ');
+      return {status: Number(status), path, size: Number(size)};
+    }),
+    close: () => new Promise((resolve) => {
+      nginx.on('exit', () => { rmSync(folder, {recursive: true, force: true}); resolve(); });
+      nginx.kill();
+    }),
+  };
+}
