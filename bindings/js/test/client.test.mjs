@@ -12,9 +12,8 @@ import WebSocket, {WebSocketServer} from 'ws';
 import {open} from 'gicodec';
 import {Client, connect} from 'gicodec/client';
 
-import {SOURCE, bytes, hashOf, randomWords} from './support.mjs';
+import {SOURCE, bytes, hashOf, program, randomWords} from './support.mjs';
 
-const PROGRAMS = process.env.GICODEC_PROGRAMS;  // folders of gi-server and gi-trace
 let folder, server, url, file;
 
 function run(program, ...options) {
@@ -30,7 +29,7 @@ function run(program, ...options) {
 async function serve(name, address = '127.0.0.1:0') {
   const ports = join(folder, name);
   rmSync(ports, {force: true});
-  const child = spawn(join(PROGRAMS.split(':')[0], 'gi-server'),
+  const child = spawn(program('gi-server'),
       ['--play', file, '--loop', '--listen-web', address, '--insecure-web', '--port-file', ports],
       {stdio: ['ignore', 'ignore', 'pipe']});
   let text = '';
@@ -44,8 +43,7 @@ async function serve(name, address = '127.0.0.1:0') {
 before(async () => {
   folder = mkdtempSync(join(tmpdir(), 'gicodec-'));
   file = join(folder, 'room.gic');
-  const [, traceFolder] = PROGRAMS.split(':');
-  await run(join(traceFolder, 'gi-trace'), '--scene', 'tomb', '--grid', '4x2x4', '--frames', '6', '--fps', '3', '-o', file);
+  await run(program('gi-trace'), '--scene', 'tomb', '--grid', '4x2x4', '--frames', '6', '--fps', '3', '-o', file);
   let address;
   [server, address] = await serve('ports');
   url = `ws://${address}`;

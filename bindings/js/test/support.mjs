@@ -6,8 +6,9 @@ import {join} from 'node:path';
 export const SOURCE = process.env.GICODEC_SOURCE;
 export const golden = (name) => new Uint8Array(readFileSync(join(SOURCE, 'tests/golden', name)));
 
-/** The path of a program of the build. */
-export const program = (name) => process.env.GICODEC_PROGRAMS.split(':').map((folder) => join(folder, name)).find(existsSync);
+/** The path of a program of the build, which GICODEC_PROGRAMS names. */
+export const program = (name) => ['gicodec', 'stream', 'programs']
+    .map((folder) => join(process.env.GICODEC_PROGRAMS, folder, name)).find(existsSync);
 
 /** Numbers as random as a test needs, the same in each run. */
 export function* randomWords(seed = 1) {
