@@ -2,7 +2,7 @@
 // Modules are built by CMake, ninja and clang 16 with wasi-libc; --quick builds larger and slower ones, with
 // vectors alone, in a quarter of the time, for tests.
 import {execFileSync} from 'node:child_process';
-import {copyFileSync, mkdirSync, readFileSync, rmSync, statSync, writeFileSync} from 'node:fs';
+import {copyFileSync, existsSync, mkdirSync, readFileSync, rmSync, statSync, writeFileSync} from 'node:fs';
 import {createRequire} from 'node:module';
 import {dirname, join, resolve} from 'node:path';
 import {fileURLToPath} from 'node:url';
@@ -18,7 +18,8 @@ const {values} = parseArgs({options: {
   quick: {type: 'boolean', default: false},
 }});
 const [out, folder] = [resolve(values.out), resolve(values.modules)];
-const ENTRIES = {index: 'index', encoder: 'encoder_entry', client: 'client_entry', three: 'three/index'};  // and their sources
+const ENTRIES = {index: 'index', encoder: 'encoder_entry', client: 'client_entry', three: 'three/index',
+                 three_nodes: 'three/probe_nodes'};  // and their sources
 const BUILDS = values.quick ? [
   {name: 'quick', modules: ['decoder', 'client', 'encoder'], options: ['-DGICODEC_CLIENT=ON', '-DCMAKE_UNITY_BUILD=ON']},
 ] : [  // what is built at once
@@ -96,7 +97,8 @@ copyFileSync(join(here, 'types/common.d.ts'), join(out, 'common.d.ts'));
 const sizes = [];
 for (const [entry, source] of Object.entries(ENTRIES)) {
   writeFileSync(join(out, `${entry}.js`), await bundle(source));
-  copyFileSync(join(here, 'types', `${entry}.d.ts`), join(out, `${entry}.d.ts`));
+  const types = join(here, 'types', `${entry}.d.ts`);
+  if (existsSync(types)) copyFileSync(types, join(out, `${entry}.d.ts`));  // of those that users import
   sizes.push(`${entry}.js ${statSync(join(out, `${entry}.js`)).size}`);
 }
 console.log(`${out}: ${sizes.join(', ')} bytes`);

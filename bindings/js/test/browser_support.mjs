@@ -83,3 +83,18 @@ export async function serveByNginx(bodies, port = 20000 + process.pid % 20000) {
     }),
   };
 }
+
+/** What Chromium has WebGL and WebGPU by where there is no GPU. */
+export const CHROMIUM_WITH_GPU = ['--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--enable-unsafe-webgpu',
+                                  '--use-webgpu-adapter=swiftshader', '--enable-features=Vulkan'];
+
+/** A page of a module of this folder, with three.js of WebGLRenderer or WebGPURenderer. */
+export function pageOf(module, webgpu = false) {
+  const imports = {
+    three: `/node_modules/three/build/three.${webgpu ? 'webgpu' : 'module'}.js`,
+    'three/webgpu': '/node_modules/three/build/three.webgpu.js', 'three/tsl': '/node_modules/three/build/three.tsl.js',
+    'three/addons/': '/node_modules/three/examples/jsm/', 'gicodec/three': '/node_modules/gicodec/three.js',
+  };
+  return `<!doctype html><meta charset=utf-8><script type=importmap>${JSON.stringify({imports})}</script>` +
+         `<script type=module src="/test/${module}.js"></script>`;
+}

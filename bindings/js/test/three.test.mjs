@@ -6,26 +6,19 @@ import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {after, before, describe, test} from 'node:test';
 
-import {launch, serve, serveByNginx} from './browser_support.mjs';
+import {CHROMIUM_WITH_GPU, launch, pageOf, serve, serveByNginx} from './browser_support.mjs';
 import {bytes, golden, program, randomWords} from './support.mjs';
 
-const imports = (three) => ({
-  three, 'three/webgpu': '/node_modules/three/build/three.webgpu.js', 'three/tsl': '/node_modules/three/build/three.tsl.js',
-  'three/addons/': '/node_modules/three/examples/jsm/', 'gicodec/three': '/node_modules/gicodec/three.js',
-});
-const html = (three) => `<!doctype html><meta charset=utf-8><script type=importmap>${JSON.stringify({imports: imports(three)})}` +
-  '</script><script type=module src="/test/three_page.js"></script>';
 let browser, server;
 
 before(async () => {
   server = await serve({
-    '/webgl.html': html('/node_modules/three/build/three.module.js'),
-    '/webgpu.html': html('/node_modules/three/build/three.webgpu.js'),
+    '/webgl.html': pageOf('three_page'),
+    '/webgpu.html': pageOf('three_page', true),
     '/golden.gic': golden('native_strong.gic'),
     '/text.gic': 'no container',
   });
-  browser = await launch(['--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--enable-unsafe-webgpu',
-                          '--use-webgpu-adapter=swiftshader', '--enable-features=Vulkan']);
+  browser = await launch(CHROMIUM_WITH_GPU);
 });
 after(async () => {
   await browser?.close();
@@ -108,7 +101,7 @@ for (const [name, type] of [['webgl', 'Float32Array'], ['webgpu', 'Uint16Array']
     });
 
     test('what cannot be shown is said', async () => {
-      assert.match(await call('failure', '/golden.gic'), /no volume of a layout that GILoader shows.*--layout three/);
+      assert.match(await call('failure', '/golden.gic'), /no volume that GILoader shows: it has .*--layout three/);
       assert.match(await call('failure', '/absent.gic'), /the server answers 404/);
       assert.match(await call('failure', '/text.gic'), /GicodecError: .*not/i);
       const cut = decode(made.file);
@@ -160,7 +153,7 @@ test('of a file with many states only what is shown is loaded, here from nginx',
   }
   const file = writer.finish();
   const wanted = Uint16Array.from(texels, (_, i) => Math.imul(i + 30 * 7919, 2654435761) >>> 17);
-  const nginx = await serveByNginx({'many.gic': file, 'webgl.html': html('/node_modules/three/build/three.module.js')});
+  const nginx = await serveByNginx({'many.gic': file, 'webgl.html': pageOf('three_page')});
   t.after(() => nginx.close());
   const page = await browser.newPage();
   await page.goto(`${nginx.origin}/webgl.html`);

@@ -1,4 +1,4 @@
-import type {Group, Light, Loader, LoadingManager, Vector3, Box3, Data3DTexture} from 'three';
+import type {Box3, Data3DTexture, DataArrayTexture, Group, Light, Loader, LoadingManager, Object3D, Vector3} from 'three';
 import type {OwnBytes, Source} from './index.js';
 
 /** A frame of a container. `time` is null where states have names alone. */
@@ -23,7 +23,7 @@ export interface StateGrid extends Light {
  * Loads containers (.gic): `scene.add(await new GILoader().loadAsync('room.gic'))` lights a scene. Several
  * volumes come as a Group. Where the server sends parts of files, only what a state needs is loaded.
  */
-export class GILoader extends Loader<StateGrid | Group> {
+export class GILoader extends Loader<StateGrid | ProbeVolume | Group> {
   constructor(manager?: LoadingManager);
   /** Turns textures of float to half, which loses bits. */
   half: boolean;
@@ -31,11 +31,31 @@ export class GILoader extends Loader<StateGrid | Group> {
   detectSupport(renderer: object): this;
   /** Decodes in that many workers, whatever loads; 0: on the page's thread. */
   setWorkerLimit(count: number): this;
-  parse(source: Source): Promise<StateGrid | Group>;
-  parse(source: Source, onLoad: (object: StateGrid | Group) => void, onError?: (error: unknown) => void): void;
+  parse(source: Source): Promise<StateGrid | ProbeVolume | Group>;
+  parse(source: Source, onLoad: (object: StateGrid | ProbeVolume | Group) => void, onError?: (error: unknown) => void): void;
   abort(): this;
   /** Ends what loads. Objects that were made end with their own dispose(). */
   dispose(): void;
+}
+
+/**
+ * A volume of kind probes (DDGI), which lights what is drawn with it: in WebGPURenderer all, in WebGLRenderer
+ * the lit materials of its scene, as they are first seen.
+ */
+export class ProbeVolume extends Light {
+  private constructor();
+  readonly isProbeVolume: true;
+  /** False: only what light() is given is lit, in WebGLRenderer. */
+  autoLight: boolean;
+  /** From the first probe to the last, before the volume is moved. */
+  readonly boundingBox: Box3;
+  /** As they are on the GPU, texel for texel those of the container. */
+  readonly textures: {readonly color: DataArrayTexture, readonly visibility: DataArrayTexture};
+  light(object: Object3D): void;
+  readonly states: readonly State[];
+  /** A time, for the last state at or before it, or a name. */
+  state: number | string;
+  setState(state: number | string): Promise<void>;
 }
 
 /** What a grid's texture held. */

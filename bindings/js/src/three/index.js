@@ -1,3 +1,4 @@
 // The entry "gicodec/three": containers as objects of three.js.
 export {GILoader} from './loader.js';
+export {ProbeVolume} from './probe_volume.js';
 export {captureLightProbeGrid, saveLightProbeGrid} from './save.js';

@@ -3,13 +3,14 @@ import {Group, Loader} from 'three';
 import {fetchRanges, open, useWorkers} from 'gicodec:entry/index';
 
 import {makeProbeGrid} from './probe_grid.js';
+import {ProbeVolume, probeTextures} from './probe_volume.js';
 import {States} from './states.js';
 
 const THREE_LAYOUTS = ['three', 'three-float32'];
 
 /** Loads containers (.gic). */
 export class GILoader extends Loader {
-  #webgpu = false;
+  #webgpu = null;  // the renderer, if it is WebGPURenderer
   #filtersFloat = true;
   #workers = null;
   #ended = new AbortController();
@@ -18,7 +19,7 @@ export class GILoader extends Loader {
 
   /** Says for which renderer objects are made: without it, for WebGLRenderer on a desktop. */
   detectSupport(renderer) {
-    this.#webgpu = renderer.isWebGPURenderer === true;
+    this.#webgpu = renderer.isWebGPURenderer ? renderer : null;
     this.#filtersFloat = this.#webgpu ? renderer.hasFeature('float32-filterable')
                                       : renderer.extensions.has('OES_texture_float_linear');
     return this;
@@ -107,23 +108,34 @@ export class GILoader extends Loader {
   }
 
   async #objects(player, whole) {
-    const known = player.volumes.map((volume) => ({volume, layout: volume.metadata['gicodec:layout'] ?? ''}))
-        .filter(({layout}) => THREE_LAYOUTS.includes(layout));
+    const known = player.volumes.map((volume) => {
+      if (THREE_LAYOUTS.includes(volume.metadata['gicodec:layout'])) return {volume, textures: [volume.firstTexture]};
+      const probes = probeTextures(volume, player.textures);
+      return probes && {volume, probes, textures: [probes.color, probes.visibility]};
+    }).filter(Boolean);
     if (known.length === 0) {
-      const layouts = player.volumes.map(({metadata}) => metadata['gicodec:layout'] ?? 'none').join(', ');
-      throw new TypeError(`the container has no volume of a layout that GILoader shows (its layouts: ${layouts}): ` +
-                          'gicodec encode --layout three says that textures are a LightProbeGrid');
+      const kinds = player.volumes.map(({kind, metadata}) => metadata['gicodec:layout'] ?? kind).join(', ');
+      throw new TypeError(`the container has no volume that GILoader shows: it has ${kinds}. It shows probes with ` +
+                          'irradiance and visibility, and LightProbeGrids, which gicodec encode --layout three packs');
     }
     const frames = await player.frames();
     if (frames.length === 0) throw new RangeError('the container has no frames');
     if (whole && frames.length > 1) {
       console.info(`GILoader: the server of ${whole} sends no parts of files, so all states are loaded at once`);
     }
-    const states = new States(player, frames, known.map(({volume}) => volume.firstTexture));
+    const states = new States(player, frames, known.flatMap(({textures}) => textures));
     const release = states.use();
     const objects = [];
     try {
-      for (const {volume} of known) objects.push(await this.#grid(states, player, volume));
+      if (this.#webgpu && known.some(({probes}) => probes)) {
+        const {ProbeVolumeNode} = await import('gicodec:entry/three_nodes');
+        if (ProbeVolume.registerNode) ProbeVolume.registerNode(ProbeVolumeNode);
+        else this.#webgpu.library.addLight(ProbeVolumeNode, ProbeVolume);  // before r187
+      }
+      for (const {volume, probes} of known) {
+        objects.push(probes ? await ProbeVolume.make(states, volume, player.textures, {webgpu: this.#webgpu !== null})
+                            : await this.#grid(states, player, volume));
+      }
     } catch (error) {
       objects.forEach((object) => object.dispose());
       throw error;

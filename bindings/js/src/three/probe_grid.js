@@ -1,7 +1,7 @@
 // Containers of three.js's own layout (engines.h, three_volume) as LightProbeGrid.
 import {Data3DTexture, DataUtils, FloatType, HalfFloatType, LinearFilter, RGBAFormat} from 'three';
 
-import {placeOfState} from './states.js';
+import {addStates} from './states.js';
 
 /** Textures of a grid's atlas along z, and slices of each in front and behind, which repeat the nearest one. */
 export const PARTS = 7, PADDING = 1;
@@ -58,11 +58,7 @@ function blend(out, first, second, part, half) {
   }
 }
 
-/**
- * A LightProbeGrid of a volume. `Grid` is its class, `half` turns float to half. It has, besides,
- * `states`, `state`, which may be set to a time or a name, and setState(), which resolves once the
- * texture shows it.
- */
+/** A LightProbeGrid of a volume, with states. `Grid` is its class, `half` turns float to half. */
 export async function makeProbeGrid(states, volume, texture, place, {Grid, half}) {
   const axes = volume.metadata['gicodec:axes'] ?? AXES;
   if (axes !== AXES) {
@@ -79,42 +75,13 @@ export async function makeProbeGrid(states, volume, texture, place, {Grid, half}
   const halves = half || texture.ArrayType === Uint16Array;
   const shown = makeTexture(resolution, texture.slices, halves ? Uint16Array : Float32Array,
                             halves ? HalfFloatType : FloatType);
-  const release = states.use();
-  let state = null, asked = 0;
-  const show = async ({first, second, part}, wanted) => {
-    const turn = ++asked;
-    state = wanted;
-    const [a, b] = await Promise.all([states.frame(first), states.frame(second)]);
-    if (turn !== asked) return;  // another one was asked for, or dispose() called
-    blend(shown.image.data, a.get(place), b.get(place), part, halves);
+  await addStates(grid, states, (first, second, part) => {
+    blend(shown.image.data, first.get(place), second.get(place), part, halves);
     shown.needsUpdate = true;
-    grid.dispatchEvent({type: 'state', state: wanted});
-  };
-  const setState = async (wanted) => show(placeOfState(states.all, wanted), wanted);
-  Object.defineProperties(grid, {
-    states: {value: states.all, enumerable: true},
-    state: {enumerable: true, get: () => state, set: (wanted) => {
-      setState(wanted).catch((error) => {
-        console.error(`GILoader: state ${wanted} of ${JSON.stringify(grid.name)}:`, error);
-        grid.dispatchEvent({type: 'error', error});
-      });
-    }},
-    setState: {value: setState},
-    dispose: {configurable: true, value() {
-      ++asked;
-      shown.dispose();
-      release();
-      if (grid.texture === shown) grid.texture = null;
-      Object.getPrototypeOf(grid).dispose.call(grid);
-    }},
+  }, () => {
+    shown.dispose();
+    if (grid.texture === shown) grid.texture = null;
   });
-  const [{frame, time, name}] = states.all;
-  try {
-    await show({first: frame, second: frame, part: 0}, time ?? name);
-  } catch (error) {
-    grid.dispose();
-    throw error;
-  }
   grid.texture = shown;
   return grid;
 }

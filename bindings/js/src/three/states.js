@@ -91,3 +91,51 @@ export class States {
     };
   }
 }
+
+/**
+ * Gives an object `states`, `state`, which may be set to a time or a name, setState(), which resolves once
+ * it is shown, and a dispose() that calls `free`. `show(first, second, part)` takes the textures of two
+ * frames. Resolves once the first state is shown.
+ */
+export async function addStates(object, states, show, free) {
+  const release = states.use();
+  let state = null, asked = 0, ended = false;
+  const go = async ({first, second, part}, wanted) => {
+    const turn = ++asked;
+    state = wanted;
+    const [a, b] = await Promise.all([states.frame(first), states.frame(second)]);
+    if (turn !== asked) return;  // another one was asked for, or dispose() called
+    show(a, b, part);
+    object.dispatchEvent({type: 'state', state: wanted});
+  };
+  const setState = async (wanted) => {
+    if (ended) throw new TypeError('the object was disposed of: load it again');
+    return go(placeOfState(states.all, wanted), wanted);
+  };
+  const dispose = object.dispose.bind(object);
+  Object.defineProperties(object, {
+    states: {value: states.all, enumerable: true},
+    state: {enumerable: true, get: () => state, set: (wanted) => {
+      setState(wanted).catch((error) => {
+        console.error(`GILoader: state ${wanted} of ${JSON.stringify(object.name)}:`, error);
+        object.dispatchEvent({type: 'error', error});
+      });
+    }},
+    setState: {value: setState},
+    dispose: {configurable: true, value() {
+      if (ended) return;
+      ended = true;
+      ++asked;
+      free();
+      release();
+      dispose();
+    }},
+  });
+  const [{frame, time, name}] = states.all;
+  try {
+    await go({first: frame, second: frame, part: 0}, time ?? name);
+  } catch (error) {
+    object.dispose();
+    throw error;
+  }
+}
