@@ -69,16 +69,17 @@ const embedded = {
       const module = path.slice('gicodec:module/'.length);
       return {contents: `export default {simd: '@${module}/simd@', scalar: '@${module}/scalar@'};`};
     });
-    onLoad({filter: /^gicodec:worker$/, namespace: 'gicodec'}, async () => ({
-      contents: `export default ${literal(await bundle('worker'))};`,
+    onLoad({filter: /^gicodec:text\//, namespace: 'gicodec'}, async ({path}) => ({
+      contents: `export default ${literal(await bundle(path.slice('gicodec:text/'.length), true))};`,
     }));
   },
 };
 
-async function bundle(name) {
+/** The text of a source with what it imports: a module, or what a worker runs. */
+async function bundle(name, isWorker = false) {
   const {outputFiles: [{text}]} = await build({
-    entryPoints: [join(here, 'src', `${name}.js`)], bundle: true, minify: name === 'worker', write: false,
-    format: name === 'worker' ? 'iife' : 'esm', platform: 'neutral', target: 'es2022', charset: 'utf8',
+    entryPoints: [join(here, 'src', `${name}.js`)], bundle: true, minify: isWorker, write: false,
+    format: isWorker ? 'iife' : 'esm', platform: 'neutral', target: 'es2022', charset: 'utf8',
     legalComments: 'none', external: ['three', 'three/*'], plugins: [embedded],
   });
   // Behind the bundler, which escapes more than a module in UTF-8 needs.

@@ -14,6 +14,9 @@ export const useModule = (source) => module.use(source);
 
 export const Client = {create: (options) => client.Client.create(module, options)};
 
+/** The compiled module, for gicodec/three. @internal */
+export const compiledClient = () => module.compiled();
+
 /** Follows a server over WebSockets. */
 export async function connect(url, {onUpdate, onLost, everything, timeout, signal, WebSocket, ...options} = {}) {
   signal?.throwIfAborted();

@@ -3,7 +3,7 @@
 import {GicodecError} from './error.js';
 import {Instance} from './instance.js';
 import {LocalPlayer} from './local_player.js';
-import workerText from 'gicodec:worker';
+import workerText from 'gicodec:text/worker';
 
 /** A player of the caller's thread, as those of workers. */
 class Here {

@@ -79,6 +79,10 @@ for (const [name, type] of [['webgl', 'Float32Array'], ['webgpu', 'Uint16Array']
       assert.equal(events.at(-1)[1], decode(made.file).length);
     });
 
+    test('a grid that stays in the scene shows its states', async () => {
+      assert.equal(await call('stays', `/${name}-states.gic`, 'noon'), made.texels[1]);
+    });
+
     test('workers decode the same', async () => {
       const found = await call('follow', `/${name}-states.gic`, ['noon'], 1);
       assert.deepEqual(found.texels, made.texels.slice(0, 2));

@@ -142,6 +142,27 @@ window.page = {
     return result;
   },
 
+  /** A grid that stays in the scene: its texels as of a state, once it was drawn. */
+  async stays(url, state) {
+    const grid = await loader().loadAsync(url);
+    baked.removeFromParent();
+    scene.add(grid);
+    const target = new THREE.RenderTarget(SIZE, SIZE);
+    const draw = () => { renderer.setRenderTarget(target); renderer.render(scene, camera); renderer.setRenderTarget(null); };
+    draw();
+    await grid.setState(state);
+    draw();
+    const {image} = grid.texture, {data} = image;
+    image.data = null;
+    const {texels} = await captureLightProbeGrid(renderer, grid);
+    image.data = data;
+    grid.removeFromParent();
+    grid.dispose();
+    target.dispose();
+    scene.add(baked);
+    return base64(texels);
+  },
+
   /** The texels of a file as half, on request. */
   async asHalf(url) {
     const one = loader();

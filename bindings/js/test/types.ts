@@ -2,8 +2,8 @@
 import {Decoder, GicodecError, open, peek, ready, useWorkers, type Player, type Texels} from 'gicodec';
 import {connect, type ClientVolume} from 'gicodec/client';
 import {Encoder, Writer, ddgiIrradiance, volumeOfLayout, type VolumeDesc} from 'gicodec/encoder';
-import {GILoader, captureLightProbeGrid, saveLightProbeGrid} from 'gicodec/three';
-import type {Scene, WebGLRenderer} from 'three';
+import {GIClient, GILoader, captureLightProbeGrid, saveLightProbeGrid} from 'gicodec/three';
+import type {Camera, Scene, WebGLRenderer} from 'three';
 import type {OwnBytes} from 'gicodec';
 
 export async function play(file: File): Promise<Texels> {
@@ -39,6 +39,15 @@ export async function follow(url: string, signal: AbortSignal): Promise<string> 
 
 function draw(room: ClientVolume | undefined): void {
   console.log(room?.texels('color').byteLength, room?.geometry.grid);
+}
+
+export function shine(scene: Scene, renderer: WebGLRenderer, camera: Camera): GIClient {
+  const live = new GIClient(renderer, 'wss://example.org', {token: 'x', everything: false});
+  live.addEventListener('update', ({state, blocks}) => console.log(state.time, blocks, live.statistics.decodeMs));
+  live.addEventListener('lost', ({why}) => console.warn(why));
+  scene.add(live.object);
+  live.setView(camera);
+  return live;
 }
 
 export async function light(scene: Scene, renderer: WebGLRenderer): Promise<OwnBytes> {

@@ -1,5 +1,8 @@
-import type {Box3, Data3DTexture, DataArrayTexture, Group, Light, Loader, LoadingManager, Object3D, Vector3} from 'three';
-import type {OwnBytes, Source} from './index.js';
+import type {
+  Box3, Camera, Data3DTexture, DataArrayTexture, EventDispatcher, Group, Light, Loader, LoadingManager, Object3D, Vector3,
+} from 'three';
+import type {ClientOptions, ClientState} from './client.js';
+import type {OwnBytes, Source, Texels} from './index.js';
 
 /** A frame of a container. `time` is null where states have names alone. */
 export interface State { readonly frame: number; readonly time: number | null; readonly name: string }
@@ -56,6 +59,58 @@ export class ProbeVolume extends Light {
   /** A time, for the last state at or before it, or a name. */
   state: number | string;
   setState(state: number | string): Promise<void>;
+}
+
+export interface GIClientOptions extends ClientOptions {
+  /** Milliseconds without a message after which a connection counts as lost: 20,000; 0: none. */
+  timeout?: number;
+  /** False: the server sends what setView() sees, in place of everything. */
+  everything?: boolean;
+  /** False: decodes on the page's thread, where a content security policy has no worker-src blob:. */
+  worker?: boolean;
+  signal?: AbortSignal;
+}
+
+export interface GIClientStatistics {
+  updates: number;
+  /** Received. */
+  bytes: number;
+  blocks: number;
+  /** Sent to the GPU in parts: of an update that changed most of a texture three.js sends all of it. */
+  uploadedBytes: number;
+  decodeMs: number;
+  uploadMs: number;
+  losses: number;
+}
+
+export interface GIClientEvents {
+  connected: object;
+  /** What an update cost, once it is shown. */
+  update: {state: ClientState, blocks: number, decodeMs: number, uploadMs: number, uploadedBytes: number};
+  /** The server has other volumes. */
+  volumes: object;
+  /** The connection was lost; the next try is in `wait` milliseconds. */
+  lost: {wait: number, why: string};
+  /** The session ended for good. */
+  closed: {reason: string};
+  error: {error: Error};
+}
+
+/** The light of a gi-server in a scene, as it changes. A connection that is lost is tried again. */
+export class GIClient extends EventDispatcher<GIClientEvents> {
+  /** `url`: wss://HOST:PORT of gi-server --listen-web. */
+  constructor(renderer: object, url: string, options?: GIClientOptions);
+  /** What it shows: add it to the scene. */
+  readonly object: Group;
+  readonly statistics: Readonly<GIClientStatistics>;
+  /** As of the last update; null before the first. */
+  readonly state: ClientState | null;
+  /** The texels of a volume's textures as of the last update, by name; undefined: it has no such volume. */
+  texels(name?: string): Record<string, Texels> | undefined;
+  /** Tells the server where the camera is, at most ten times a second. `time`: of the picture, in seconds. */
+  setView(camera: Camera, time?: number): void;
+  /** Ends the session and frees what it shows. */
+  dispose(): void;
 }
 
 /** What a grid's texture held. */

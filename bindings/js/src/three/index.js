@@ -1,4 +1,5 @@
 // The entry "gicodec/three": containers as objects of three.js.
+export {GIClient} from './client.js';
 export {GILoader} from './loader.js';
 export {ProbeVolume} from './probe_volume.js';
 export {captureLightProbeGrid, saveLightProbeGrid} from './save.js';

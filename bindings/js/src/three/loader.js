@@ -10,7 +10,7 @@ const THREE_LAYOUTS = ['three', 'three-float32'];
 
 /** Loads containers (.gic). */
 export class GILoader extends Loader {
-  #webgpu = null;  // the renderer, if it is WebGPURenderer
+  #renderer = null;
   #filtersFloat = true;
   #workers = null;
   #ended = new AbortController();
@@ -19,8 +19,8 @@ export class GILoader extends Loader {
 
   /** Says for which renderer objects are made: without it, for WebGLRenderer on a desktop. */
   detectSupport(renderer) {
-    this.#webgpu = renderer.isWebGPURenderer ? renderer : null;
-    this.#filtersFloat = this.#webgpu ? renderer.hasFeature('float32-filterable')
+    this.#renderer = renderer;
+    this.#filtersFloat = renderer.isWebGPURenderer ? renderer.hasFeature('float32-filterable')
                                       : renderer.extensions.has('OES_texture_float_linear');
     return this;
   }
@@ -127,13 +127,11 @@ export class GILoader extends Loader {
     const release = states.use();
     const objects = [];
     try {
-      if (this.#webgpu && known.some(({probes}) => probes)) {
-        const {ProbeVolumeNode} = await import('gicodec:entry/three_nodes');
-        if (ProbeVolume.registerNode) ProbeVolume.registerNode(ProbeVolumeNode);
-        else this.#webgpu.library.addLight(ProbeVolumeNode, ProbeVolume);  // before r187
+      if (this.#renderer?.isWebGPURenderer && known.some(({probes}) => probes)) {
+        await ProbeVolume.useNodes(this.#renderer);
       }
       for (const {volume, probes} of known) {
-        objects.push(probes ? await ProbeVolume.make(states, volume, player.textures, {webgpu: this.#webgpu !== null})
+        objects.push(probes ? await ProbeVolume.make(states, volume, player.textures, this.#renderer)
                             : await this.#grid(states, player, volume));
       }
     } catch (error) {
@@ -153,9 +151,9 @@ export class GILoader extends Loader {
     if (half && !this.half) {
       console.info('GILoader: this device cannot filter textures of float, so they become half, which loses bits');
     }
-    const Grid = this.#webgpu
+    const Grid = this.#renderer?.isWebGPURenderer
       ? (await import('three/addons/lighting/LightProbeGrid.js')).LightProbeGrid
       : (await import('three/addons/lighting/LightProbeGridWebGL.js')).LightProbeGridWebGL;
-    return makeProbeGrid(states, volume, texture, place, {Grid, half});
+    return makeProbeGrid(states, volume, texture, place, {Grid, half, renderer: this.#renderer});
   }
 }

@@ -1,6 +1,7 @@
 // Containers of three.js's own layout (engines.h, three_volume) as LightProbeGrid.
 import {Data3DTexture, DataUtils, FloatType, HalfFloatType, LinearFilter, RGBAFormat} from 'three';
 
+import {uploadAll} from './partial_upload.js';
 import {addStates} from './states.js';
 
 /** Textures of a grid's atlas along z, and slices of each in front and behind, which repeat the nearest one. */
@@ -59,7 +60,7 @@ function blend(out, first, second, part, half) {
 }
 
 /** A LightProbeGrid of a volume, with states. `Grid` is its class, `half` turns float to half. */
-export async function makeProbeGrid(states, volume, texture, place, {Grid, half}) {
+export async function makeProbeGrid(states, volume, texture, place, {Grid, half, renderer}) {
   const axes = volume.metadata['gicodec:axes'] ?? AXES;
   if (axes !== AXES) {
     throw new RangeError(`the axes of ${JSON.stringify(volume.name)} are ${axes}, and a LightProbeGrid's are ${AXES}: ` +
@@ -77,7 +78,7 @@ export async function makeProbeGrid(states, volume, texture, place, {Grid, half}
                             halves ? HalfFloatType : FloatType);
   await addStates(grid, states, (first, second, part) => {
     blend(shown.image.data, first.get(place), second.get(place), part, halves);
-    shown.needsUpdate = true;
+    uploadAll(renderer, shown);
   }, () => {
     shown.dispose();
     if (grid.texture === shown) grid.texture = null;

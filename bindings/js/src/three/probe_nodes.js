@@ -2,7 +2,7 @@
 import {AnalyticLightNode} from 'three/webgpu';
 import {
   Fn, If, Loop, PI, float, floor, int, ivec2, ivec3, max, min, mix, mod, normalWorld, positionViewDirection, positionWorld,
-  texture, transformDirection, uint, uniform, vec2, vec3, cameraWorldMatrix,
+  renderGroup, texture, transformDirection, uint, uniform, vec2, vec3, cameraWorldMatrix,
 } from 'three/tsl';
 
 /** The node of a ProbeVolume. */
@@ -13,11 +13,12 @@ export class ProbeVolumeNode extends AnalyticLightNode {
 
   setup(builder) {
     const {uniforms, kind} = this.light;
-    const value = (name, type) => uniform(uniforms[name].value, type);
+    // Shared, so that they are looked at though an object stands still.
+    const value = (name) => uniform(uniforms[name].value).setGroup(renderGroup);
     const size = (name) => value(`${name}Size`);
     const [fromWorld, origin, spacing] = ['FromWorld', 'Origin', 'Spacing'].map((name) => value(name));
     const [grid, scroll] = ['Grid', 'Scroll'].map((name) => ivec3(value(name)));
-    const intensity = uniform(1).onRenderUpdate(() => uniforms.Intensity.value);
+    const intensity = uniform(1).setGroup(renderGroup).onRenderUpdate(() => uniforms.Intensity.value);
     const octahedral = Fn(([d]) => {
       const p = d.xy.div(d.x.abs().add(d.y.abs()).add(d.z.abs())).toVar();
       const fold = p.yx.abs().oneMinus().mul(vec2(p.x.greaterThanEqual(0).select(1, -1), p.y.greaterThanEqual(0).select(1, -1)));

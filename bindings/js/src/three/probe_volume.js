@@ -3,10 +3,11 @@ import {
   Box3, DataArrayTexture, Light, LinearFilter, Matrix3, Matrix4, NearestFilter, RedFormat, UnsignedByteType, Vector3,
 } from 'three';
 
+import {uploadAll, uploadBlocks} from './partial_upload.js';
 import {patchMaterial} from './probe_shader.js';
 import {addStates} from './states.js';
 import {formatOf} from './texture_formats.js';
-import {tilingOf} from './tilings.js';
+import {forRows, tilingOf} from './tilings.js';
 
 const COLORS = ['A2R10G10B10_UNORM_PACK32', 'A2B10G10R10_UNORM_PACK32', 'R8G8B8A8_UNORM', 'R16G16B16A16_SFLOAT',
                 'R32G32B32A32_SFLOAT', 'B10G11R11_UFLOAT_PACK32', 'E5B9G9R9_UFLOAT_PACK32'];
@@ -66,29 +67,39 @@ export class ProbeVolume extends Light {
   #id = ++count;
   #turn;
   #places;
-  #visibility;
+  #descs;
+  #renderer;
   #patched = new Map();
 
   /** @internal */
-  static async make(states, volume, textures, {webgpu}) {
-    const light = new ProbeVolume(volume, textures);
-    light.autoLight = !webgpu;
-    await addStates(light, states, (frames) => light.#show(frames), () => light.#free());
+  static async make(states, volume, textures, renderer) {
+    const light = new ProbeVolume(volume, textures, renderer);
+    await addStates(light, states, (frames) => light.setTexels(frames));
     return light;
   }
 
-  constructor(volume, textures) {
+  /** Lets a WebGPURenderer draw with volumes. @internal */
+  static async useNodes(renderer) {
+    const {ProbeVolumeNode} = await import('gicodec:entry/three_nodes');
+    if (ProbeVolume.registerNode) ProbeVolume.registerNode(ProbeVolumeNode);
+    else renderer.library.addLight(ProbeVolumeNode, ProbeVolume);  // before r187
+  }
+
+  /** `renderer`: null where it is not known, which then is WebGLRenderer. */
+  constructor(volume, textures, renderer) {
     super();
+    this.#renderer = renderer;
+    this.autoLight = !renderer?.isWebGPURenderer;
     const places = probeTextures(volume, textures);
     if (!volume.geometry) {
       throw new RangeError(`${JSON.stringify(volume.name)} does not say where its probes stand: attributes ` +
                            'gicodec:origin and gicodec:spacing of dumps do');
     }
-    const {grid, origin, spacing, scroll} = volume.geometry;
+    const {grid} = volume.geometry;
     const [color, visibility] = [textures[places.color], textures[places.visibility]];
     this.name = volume.name;
     this.#places = places;
-    this.#visibility = visibility;
+    this.#descs = {color, visibility};
     this.#turn = turnOf(volume.metadata);
     /** What shaders differ in. */
     this.kind = {words: formatOf(color.format).words, linear: isLinear(volume, color)};
@@ -103,15 +114,14 @@ export class ProbeVolume extends Light {
     /** Of both kinds of shaders, by name. */
     this.uniforms = {
       Color: {value: arrayTexture(color)}, Visibility: {value: arrayTexture(visibility)}, Active: {value: active},
-      FromWorld: {value: new Matrix4()}, Origin: {value: new Vector3(...origin)}, Spacing: {value: new Vector3(...spacing)},
-      Grid: {value: new Vector3(...grid)}, Scroll: {value: new Vector3(...scroll)},
+      FromWorld: {value: new Matrix4()}, Origin: {value: new Vector3()}, Spacing: {value: new Vector3()},
+      Grid: {value: new Vector3(...grid)}, Scroll: {value: new Vector3()},
       ColorTile: {value: ofColor.tile}, ColorSize: {value: ofColor.size},
       VisibilityTile: {value: ofVisibility.tile}, VisibilitySize: {value: ofVisibility.size}, Intensity: {value: 1},
     };
-    const last = origin.map((at, axis) => at + (scroll[axis] + grid[axis] - 1) * spacing[axis]);
-    const first = origin.map((at, axis) => at + scroll[axis] * spacing[axis]);
     /** From the first probe to the last, before the volume is moved. */
-    this.boundingBox = new Box3(new Vector3(...first), new Vector3(...last)).applyMatrix4(this.#turn);
+    this.boundingBox = new Box3();
+    this.setGeometry(volume.geometry);
     this.updateMatrixWorld(true);
   }
 
@@ -142,44 +152,53 @@ export class ProbeVolume extends Light {
     });
   }
 
-  #show(frames) {
+  /** Shows textures by number, all of them. They stay the light's. @internal */
+  setTexels(all) {
     const set = (texture, texels) => {
       texture.image.data = texels;
-      texture.needsUpdate = true;
+      uploadAll(this.#renderer, texture);
     };
-    set(this.uniforms.Color.value, frames.get(this.#places.color));
-    const seen = frames.get(this.#places.visibility);
-    set(this.uniforms.Visibility.value, seen);
-    activeProbes(this.#visibility, seen, this.uniforms.Active.value.image.data);
-    this.uniforms.Active.value.needsUpdate = true;
+    set(this.uniforms.Color.value, all.get(this.#places.color));
+    set(this.uniforms.Visibility.value, all.get(this.#places.visibility));
+    this.#settle(Array.from({length: this.#descs.visibility.blocks}, (_, block) => block));
   }
 
-  #free() {
+  /** Shows what changed in blocks of a texture. Returns the bytes that went to the GPU at once. @internal */
+  setBlocks(texture, blocks) {
+    const name = Object.keys(this.#places).find((one) => this.#places[one] === texture);
+    if (!name) return 0;
+    if (name === 'visibility') this.#settle(blocks);
+    return uploadBlocks(this.#renderer, this.textures[name], this.#descs[name], blocks);
+  }
+
+  /** A probe is active unless its block of visibility is zero. */
+  #settle(blocks) {
+    const {image: {data}} = this.uniforms.Visibility.value, active = this.uniforms.Active.value;
+    const bytes = new Uint8Array(data.buffer, data.byteOffset, data.byteLength);
+    for (const block of blocks) {
+      let any = 0;
+      forRows(this.#descs.visibility, block, (first, end) => {
+        for (let i = first; i < end && any === 0; ++i) any |= bytes[i];
+      });
+      active.image.data[block] = any === 0 ? 0 : 255;
+    }
+    uploadAll(this.#renderer, active);
+  }
+
+  /** Says where the probes stand, for a volume that scrolls. @internal */
+  setGeometry({origin, spacing, scroll}) {
+    this.uniforms.Origin.value.set(...origin);
+    this.uniforms.Spacing.value.set(...spacing);
+    this.uniforms.Scroll.value.set(...scroll);
+    const {grid} = this.#descs.color;
+    const corner = (cell) => new Vector3(...origin.map((at, axis) => at + (scroll[axis] + cell(axis)) * spacing[axis]));
+    this.boundingBox.set(corner(() => 0), corner((axis) => grid[axis] - 1)).applyMatrix4(this.#turn);
+  }
+
+  dispose() {
     for (const restore of this.#patched.values()) restore();
     this.#patched.clear();
     for (const name of ['Color', 'Visibility', 'Active']) this.uniforms[name].value.dispose();
-  }
-}
-
-/** A probe is active unless its block of visibility is zero. */
-function activeProbes(desc, texels, active) {
-  const {steps, stride, offset} = tilingOf(desc);
-  const {grid: [nx, ny, nz], block: [core], width, height} = desc;
-  const words = new Uint32Array(texels.buffer, texels.byteOffset, texels.byteLength >> 2);
-  const perTexel = words.length / (width * height * desc.slices);
-  const at = (place, x, y, z) => steps[0][place] * x + steps[1][place] * y + steps[2][place] * z;
-  for (let z = 0, probe = 0; z < nz; ++z) {
-    for (let y = 0; y < ny; ++y) {
-      for (let x = 0; x < nx; ++x, ++probe) {
-        const left = at(0, x, y, z) * stride + offset;
-        let top = at(2, x, y, z) * height + at(1, x, y, z) * stride + offset;
-        let any = 0;
-        for (let end = top + core; top < end && any === 0; ++top) {
-          const first = (top * width + left) * perTexel;
-          for (let i = first; i < first + core * perTexel; ++i) any |= words[i];
-        }
-        active[probe] = any === 0 ? 0 : 255;
-      }
-    }
+    super.dispose();
   }
 }

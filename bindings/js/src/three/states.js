@@ -97,7 +97,7 @@ export class States {
  * it is shown, and a dispose() that calls `free`. `show(first, second, part)` takes the textures of two
  * frames. Resolves once the first state is shown.
  */
-export async function addStates(object, states, show, free) {
+export async function addStates(object, states, show, free = () => {}) {
   const release = states.use();
   let state = null, asked = 0, ended = false;
   const go = async ({first, second, part}, wanted) => {

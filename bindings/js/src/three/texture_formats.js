@@ -1,28 +1,29 @@
-// VkFormat's formats as three.js has them: texels go to the GPU as they are.
+// VkFormat's formats as three.js and WebGL have them: texels go to the GPU as they are.
 import {
   FloatType, HalfFloatType, RedFormat, RedIntegerFormat, RGBAFormat, RGBFormat, RGFormat, UnsignedByteType,
   UnsignedInt101111Type, UnsignedInt5999Type, UnsignedIntType,
 } from 'three';
 
 /**
- * By format: format and type of a texture, the array of its texels, and of formats that no API of browsers
- * has, how a shader reads their words: `words` has the first bits of red, green and blue.
+ * By format: format and type of a texture, their names in WebGL, bytes of a texel, and of formats that no API
+ * of browsers has the first bits of red, green and blue in a word, by which shaders read them.
  */
 const FORMATS = {
-  A2R10G10B10_UNORM_PACK32: [RedIntegerFormat, UnsignedIntType, Uint32Array, [20, 10, 0]],
-  A2B10G10R10_UNORM_PACK32: [RedIntegerFormat, UnsignedIntType, Uint32Array, [0, 10, 20]],
-  R8G8B8A8_UNORM: [RGBAFormat, UnsignedByteType, Uint8Array],
-  R8_UNORM: [RedFormat, UnsignedByteType, Uint8Array],
-  R16G16_SFLOAT: [RGFormat, HalfFloatType, Uint16Array],
-  R16G16B16A16_SFLOAT: [RGBAFormat, HalfFloatType, Uint16Array],
-  R32G32_SFLOAT: [RGFormat, FloatType, Float32Array],
-  R32G32B32A32_SFLOAT: [RGBAFormat, FloatType, Float32Array],
-  B10G11R11_UFLOAT_PACK32: [RGBFormat, UnsignedInt101111Type, Uint32Array],
-  E5B9G9R9_UFLOAT_PACK32: [RGBFormat, UnsignedInt5999Type, Uint32Array],
+  A2R10G10B10_UNORM_PACK32: [RedIntegerFormat, UnsignedIntType, 'RED_INTEGER', 'UNSIGNED_INT', 4, [20, 10, 0]],
+  A2B10G10R10_UNORM_PACK32: [RedIntegerFormat, UnsignedIntType, 'RED_INTEGER', 'UNSIGNED_INT', 4, [0, 10, 20]],
+  R8_UNORM: [RedFormat, UnsignedByteType, 'RED', 'UNSIGNED_BYTE', 1],
+  R8G8B8A8_UNORM: [RGBAFormat, UnsignedByteType, 'RGBA', 'UNSIGNED_BYTE', 4],
+  R16G16_SFLOAT: [RGFormat, HalfFloatType, 'RG', 'HALF_FLOAT', 4],
+  R16G16B16A16_SFLOAT: [RGBAFormat, HalfFloatType, 'RGBA', 'HALF_FLOAT', 8],
+  R32G32_SFLOAT: [RGFormat, FloatType, 'RG', 'FLOAT', 8],
+  R32G32B32A32_SFLOAT: [RGBAFormat, FloatType, 'RGBA', 'FLOAT', 16],
+  B10G11R11_UFLOAT_PACK32: [RGBFormat, UnsignedInt101111Type, 'RGB', 'UNSIGNED_INT_10F_11F_11F_REV', 4],
+  E5B9G9R9_UFLOAT_PACK32: [RGBFormat, UnsignedInt5999Type, 'RGB', 'UNSIGNED_INT_5_9_9_9_REV', 4],
 };
 
-/** {format, type, ArrayType, words} of a texture of this name's format; null: there is none. */
+/** {format, type, glFormat, glType, bytes, words} of a format; null: there is none. */
 export function formatOf(name) {
-  const row = FORMATS[name];
-  return row ? {format: row[0], type: row[1], ArrayType: row[2], words: row[3] ?? null} : null;
+  if (!Object.hasOwn(FORMATS, name)) return null;
+  const [format, type, glFormat, glType, bytes, words = null] = FORMATS[name];
+  return {format, type, glFormat, glType, bytes, words};
 }

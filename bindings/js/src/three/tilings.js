@@ -20,3 +20,23 @@ export function tilingOf({tiling, grid, block, guardBand, padBefore = 0, padAfte
   if (!steps || block[0] !== block[1] || block[2] !== 1) return null;
   return {steps, stride: block[0] + 2 * guardBand + padBefore + padAfter, offset: padBefore + guardBand};
 }
+
+/** The first texel of the tile of a block by its number. */
+export function originOf(desc, block) {
+  const {steps, stride} = tilingOf(desc);
+  const [nx, ny] = desc.grid;
+  const at = [block % nx, Math.floor(block / nx) % ny, Math.floor(block / (nx * ny))];
+  const place = (axis) => steps.reduce((sum, step, i) => sum + step[axis] * at[i], 0);
+  return {x: place(0) * stride, y: place(1) * stride, z: place(2)};
+}
+
+/** Calls body(first, end) with the bytes of each row of a block's tile in the texture. */
+export function forRows(desc, block, body) {
+  const {x, y, z} = originOf(desc, block);
+  const {stride} = tilingOf(desc);
+  const bytes = desc.textureBytes / (desc.width * desc.height * desc.slices);
+  for (let row = 0; row < stride; ++row) {
+    const first = ((z * desc.height + y + row) * desc.width + x) * bytes;
+    body(first, first + stride * bytes);
+  }
+}

@@ -1,0 +1,169 @@
+// GIClient: the light of a gi-server in a scene, as it changes.
+import {EventDispatcher, Group, Vector3} from 'three';
+import {compiledClient} from 'gicodec:entry/client';
+import workerText from 'gicodec:text/three/client_worker';
+
+import {ClientHost} from './client_host.js';
+import {ProbeVolume, probeTextures} from './probe_volume.js';
+import {forRows} from './tilings.js';
+
+/** Milliseconds between viewpoints. */
+const VIEW_EVERY = 100;
+const OPTIONS = ['token', 'delivery', 'budgetBlocks', 'budgetBytes', 'limits', 'timeout', 'everything', 'worker', 'signal'];
+
+/**
+ * Follows a server. `object` has its volumes, and is part of the scene. Events: "connected", "update" (with
+ * what it cost), "volumes", "lost" (wait, why; it tries again), "closed" (reason), "error".
+ */
+export class GIClient extends EventDispatcher {
+  /** What it shows. */
+  object = new Group();
+  statistics = {updates: 0, bytes: 0, blocks: 0, uploadedBytes: 0, decodeMs: 0, uploadMs: 0, losses: 0};
+  state = null;
+  #renderer;
+  #send;
+  #end = () => {};
+  #volumes = new Map();
+  #viewed = 0;
+  #ended = false;
+
+  /** `url`: wss://HOST:PORT of gi-server --listen-web. `worker: false` decodes on the page's thread. */
+  constructor(renderer, url, options = {}) {
+    super();
+    for (const name of Object.keys(options)) {
+      if (!OPTIONS.includes(name)) throw new TypeError(`there is no option ${name}: there are ${OPTIONS.join(', ')}`);
+    }
+    const {worker = true, signal, ...rest} = options;
+    this.#renderer = renderer;
+    this.object.name = 'GIClient';
+    if (signal?.aborted) throw signal.reason;
+    signal?.addEventListener('abort', () => this.dispose(), {once: true});
+    this.#start(worker && typeof Worker === 'function', {url, options: rest}).catch((error) => this.#fail(error));
+  }
+
+  async #start(worker, message) {
+    const module = await compiledClient();
+    if (this.#renderer.isWebGPURenderer) await ProbeVolume.useNodes(this.#renderer);
+    if (this.#ended) return;
+    const take = (one) => this.#take(one);
+    if (worker) {
+      const url = URL.createObjectURL(new Blob([workerText], {type: 'text/javascript'}));
+      const made = new Worker(url, {name: 'gicodec client'});
+      made.onmessage = ({data}) => take(data);
+      made.onerror = ({message: why}) => this.#fail(new Error(
+          `the worker failed: ${why ?? 'it could not start; a content security policy needs worker-src blob:'}`));
+      this.#send = (one) => made.postMessage(one);
+      this.#end = () => { made.terminate(); URL.revokeObjectURL(url); };
+    } else {
+      const host = new ClientHost(take);
+      this.#send = (one) => host.take(one);
+    }
+    this.#send({type: 'connect', module, ...message});
+  }
+
+  #take({type, ...values}) {
+    if (this.#ended) return;
+    switch (type) {
+      case 'volumes': return this.#setVolumes(values.volumes);
+      case 'update': return this.#update(values);
+      case 'lost':
+        ++this.statistics.losses;
+        return this.dispatchEvent({type, ...values});
+      case 'closed':
+        this.dispatchEvent({type, ...values});
+        return this.#end();
+      default:
+        return this.#fail(Object.assign(new Error(values.error.message), values.error));
+    }
+  }
+
+  #fail(error) {
+    this.#end();
+    console.error('GIClient:', error);
+    this.dispatchEvent({type: 'error', error});
+  }
+
+  #setVolumes(volumes) {
+    for (const {light} of this.#volumes.values()) {
+      light.removeFromParent();
+      light.dispose();
+    }
+    this.#volumes.clear();
+    for (const {id, textures, ...rest} of volumes) {
+      const volume = {...rest, metadata: {}, firstTexture: 0, textures: textures.length};
+      const whole = textures.map((one) => ({...one, metadata: {}}));
+      if (!probeTextures(volume, whole)) continue;
+      const light = new ProbeVolume(volume, whole, this.#renderer);
+      const texels = whole.map(({arrayType, textureBytes}) => new globalThis[arrayType](
+          textureBytes / globalThis[arrayType].BYTES_PER_ELEMENT));
+      light.setTexels(new Map(texels.entries()));
+      this.#volumes.set(id, {light, texels, textures: whole});
+      this.object.add(light);
+    }
+    this.dispatchEvent({type: 'volumes'});
+  }
+
+  #update({state, decodeMs, geometries, parts}) {
+    const began = performance.now();
+    const before = this.state;
+    this.state = state;
+    let uploaded = 0, blocks = 0;
+    for (const {id, geometry} of geometries) this.#volumes.get(id)?.light.setGeometry(geometry);
+    for (const {id, texture, blocks: changed, bytes} of parts) {
+      const volume = this.#volumes.get(id);
+      if (!volume) continue;
+      const into = volume.texels[texture];
+      const all = new Uint8Array(into.buffer);
+      let at = 0;
+      for (const block of changed) {
+        forRows(volume.textures[texture], block, (first, end) => {
+          all.set(bytes.subarray(at, at + end - first), first);
+          at += end - first;
+        });
+      }
+      uploaded += volume.light.setBlocks(texture, changed);
+      blocks += changed.length;
+    }
+    const uploadMs = performance.now() - began;
+    const {statistics} = this;
+    ++statistics.updates;
+    statistics.bytes = state.bytes;
+    statistics.blocks += blocks;
+    statistics.uploadedBytes += uploaded;
+    statistics.decodeMs += decodeMs;
+    statistics.uploadMs += uploadMs;
+    if (!before?.connected) this.dispatchEvent({type: 'connected'});
+    this.dispatchEvent({type: 'update', state, blocks, decodeMs, uploadMs, uploadedBytes: uploaded});
+    // One update a picture: a page in the background asks for none.
+    requestAnimationFrame(() => this.#ended || this.#send({type: 'drawn'}));
+  }
+
+  /** The texels of a volume's textures as of the last update, by name. */
+  texels(name = undefined) {
+    const found = [...this.#volumes.values()].find(({light}) => name === undefined || light.name === name);
+    return found && Object.fromEntries(found.textures.map((one, i) => [one.name, found.texels[i]]));
+  }
+
+  /** Tells the server where the camera is, at most ten times a second, so that it sends what is near first. */
+  setView(camera, time = 0) {
+    const now = performance.now();
+    if (!this.#send || now - this.#viewed < VIEW_EVERY) return;
+    this.#viewed = now;
+    const eye = camera.getWorldPosition(new Vector3());
+    const target = camera.getWorldDirection(new Vector3()).add(eye);
+    const up = new Vector3(0, 1, 0).transformDirection(camera.matrixWorld);
+    this.#send({type: 'view', viewpoint: {eye: eye.toArray(), target: target.toArray(), up: up.toArray(),
+                                          fovY: camera.fov ?? 60, aspect: camera.aspect ?? 1, time}});
+  }
+
+  /** Ends the session and frees what it shows. */
+  dispose() {
+    if (this.#ended) return;
+    this.#ended = true;
+    this.#send?.({type: 'close'});
+    setTimeout(this.#end, 1000);  // once the goodbye is sent
+    for (const {light} of this.#volumes.values()) light.dispose();
+    this.#volumes.clear();
+    this.object.removeFromParent();
+  }
+}

@@ -1,0 +1,104 @@
+// A client and its connection, in a worker or on the page's thread: tells of updates as blocks, one after
+// the other, so that a page that is slow gets fewer and larger ones.
+import {Client} from '../client.js';
+import {Connection} from '../connection.js';
+import {Instance, bytesOf} from '../instance.js';
+import {forRows, tilingOf} from './tilings.js';
+
+export class ClientHost {
+  #post;
+  #connection = null;
+  #client;
+  #sent = 0;       // the serial of what the page has
+  #busy = false;   // it has not answered yet
+  #known = '';     // the volumes that it knows
+  #decodeMs = 0;
+
+  /** `post(message, transfer)` sends to the page. */
+  constructor(post) {
+    this.#post = post;
+  }
+
+  /** Takes a message of the page's: the first one connects. */
+  async take(message) {
+    try {
+      switch (message.type) {
+        case 'connect': return await this.#connect(message);
+        case 'view': return this.#view(message);
+        case 'drawn': return this.#drawn();
+        case 'close': return this.#connection?.close();
+      }
+    } catch (error) {
+      this.#fail(error);
+    }
+  }
+
+  async #connect({module, url, options: {everything, timeout, ...options}}) {
+    this.#client = await Client.create({create: () => Instance.create(module)}, options);
+    const receive = this.#client.receive.bind(this.#client);
+    this.#client.receive = (message) => {
+      const began = performance.now();
+      try {
+        return receive(message);
+      } finally {
+        this.#decodeMs += performance.now() - began;
+      }
+    };
+    this.#connection = new Connection(this.#client, url, {
+      timeout, everything, onUpdate: () => this.#update(),
+      onLost: (wait, why) => this.#post({type: 'lost', wait, why}),
+    });
+    this.#connection.closed.then((reason) => this.#post({type: 'closed', reason}), (error) => this.#fail(error));
+  }
+
+  #view({viewpoint}) {
+    if (!this.#client?.state.connected) return;
+    this.#client.setViewpoint(viewpoint);
+    this.#connection.send();
+  }
+
+  #drawn() {
+    this.#busy = false;
+    if (this.#client.state.serial !== this.#sent) this.#update();
+  }
+
+  #fail({message, name, status}) {
+    this.#post({type: 'failed', error: {message, name, status}});
+  }
+
+  #update() {
+    if (this.#busy) return;
+    const {volumes, state} = this.#client;
+    const known = volumes.map(({id}) => id).join();
+    if (known !== this.#known) {
+      this.#known = known;
+      this.#sent = 0;
+      this.#post({type: 'volumes', volumes: volumes.map(({id, name, kind, geometry, textures}) => ({
+        id, name, kind, geometry, textures: textures.map(({ArrayType, ...desc}) => ({...desc, arrayType: ArrayType.name}))}))});
+    }
+    const parts = [], transfer = [];
+    for (const volume of volumes) {
+      volume.textures.forEach((desc, texture) => {
+        if (!tilingOf(desc)) return;
+        const blocks = volume.changed(texture, this.#sent);
+        if (blocks.length === 0) return;
+        const all = bytesOf(volume.texels(texture));
+        const pieces = [];
+        for (const block of blocks) forRows(desc, block, (first, end) => pieces.push([first, end]));
+        const bytes = new Uint8Array(pieces.reduce((sum, [first, end]) => sum + end - first, 0));
+        let at = 0;
+        for (const [first, end] of pieces) {
+          bytes.set(all.subarray(first, end), at);
+          at += end - first;
+        }
+        parts.push({id: volume.id, texture, blocks, bytes});
+        transfer.push(blocks.buffer, bytes.buffer);
+      });
+    }
+    this.#sent = state.serial;
+    this.#busy = true;
+    this.#post({type: 'update', state, decodeMs: this.#decodeMs, geometries: volumes.map(({id, geometry}) => ({id, geometry})), parts},
+               transfer);
+    this.#decodeMs = 0;
+  }
+}

@@ -1,0 +1,132 @@
+// The light of a server in Chromium, as it changes: each state is one of the server's, on the GPU too.
+import assert from 'node:assert/strict';
+import {createHash} from 'node:crypto';
+import {execFileSync, spawn} from 'node:child_process';
+import {existsSync, mkdtempSync, readFileSync, rmSync} from 'node:fs';
+import {tmpdir} from 'node:os';
+import {join} from 'node:path';
+import {after, before, test} from 'node:test';
+import {setTimeout} from 'node:timers/promises';
+
+import {CHROMIUM_WITH_GPU, launch, pageOf, serve} from './browser_support.mjs';
+import {program} from './support.mjs';
+
+const FRAMES = 24, FPS = 8;
+let browser, pages, folder, server, url;
+const states = new Map();  // by colour: that of visibility
+
+const digest = (bytes) => createHash('sha256').update(bytes).digest('hex').slice(0, 16);
+
+async function start(address, ...options) {
+  const ports = join(folder, 'ports');
+  rmSync(ports, {force: true});
+  const child = spawn(program('gi-server'), ['--play', join(folder, 'room.gic'), '--loop', '--listen-web', address,
+                                             '--insecure-web', '--proofs', '--port-file', ports, ...options], {stdio: 'ignore'});
+  for (const end = Date.now() + 30000; !existsSync(ports); await setTimeout(50)) {
+    assert.ok(child.exitCode === null && Date.now() < end, 'gi-server does not start');
+  }
+  return [child, `127.0.0.1:${readFileSync(ports, 'utf8').trim()}`];
+}
+
+before(async () => {
+  folder = mkdtempSync(join(tmpdir(), 'gicodec-live-'));
+  const run = (name, ...values) => execFileSync(program(name), [...values, '-q'], {cwd: folder, stdio: 'pipe'});
+  run('gi-trace', '--scene', 'tomb', '--grid', '8x4x8', '--frames', `${FRAMES}`, '--fps', `${FPS}`, '-o', 'room.gic');
+  run('gicodec', 'decode', 'room.gic', '-o', 'out', '--files', 'raw');
+  for (let frame = 0; frame < FRAMES; ++frame) {
+    const file = (name) => readFileSync(join(folder, `out/${name}.${String(frame).padStart(4, '0')}.raw`));
+    states.set(`${digest(file('color'))} ${digest(file('vis'))}`, frame);
+  }
+  let address;
+  [server, address] = await start('127.0.0.1:0');
+  url = `ws://${address}`;
+  pages = await serve({'/webgl.html': pageOf('live_page'), '/webgpu.html': pageOf('live_page', true)});
+  browser = await launch(CHROMIUM_WITH_GPU);
+});
+after(async () => {
+  await browser?.close();
+  await pages?.close();
+  server?.kill();
+  rmSync(folder, {recursive: true, force: true});
+});
+
+async function open(name) {
+  const page = await browser.newPage();
+  await page.goto(`${pages.origin}/${name}.html${name === 'webgpu' ? '?webgpu' : ''}`);
+  await page.waitForFunction('window.ready', {timeout: 60000});
+  assert.equal(await page.evaluate('window.ready'), true);
+  return page;
+}
+const call = (page, method, ...values) => page.evaluate((m, v) => window.page[m](...v), method, values);
+const updates = (page, count) => page.waitForFunction((n) => window.page.seen().length >= n, {timeout: 60000}, count);
+
+/** Updates from the first on after which a client has all blocks: the first ones come in parts. */
+function fromWhole(seen) {
+  const first = seen.findIndex(({color, vis}) => states.has(`${color} ${vis}`));
+  assert.ok(first >= 0 && first < 10, `update ${first} is the first whole one`);
+  return seen.slice(first);
+}
+
+for (const [name, options] of [['webgl', {}], ['webgpu', {}], ['webgl', {worker: false}]]) {
+  test(`${name} follows a server ${JSON.stringify(options)}`, async () => {
+    const page = await open(name);
+    await call(page, 'start', url, options);
+    await updates(page, 30);
+    const seen = fromWhole(await call(page, 'seen'));
+    for (const {color, vis, gpu} of seen) {
+      assert.ok(states.has(`${color} ${vis}`), 'a state that the server never had');
+      assert.equal(gpu, color);
+    }
+    assert.ok(new Set(seen.map(({color}) => color)).size > FRAMES / 2);
+    const statistics = await call(page, 'statistics');
+    assert.ok(statistics.bytes > 0 && statistics.blocks > 0 && statistics.decodeMs > 0, JSON.stringify(statistics));
+    assert.ok(seen.some(({uploadedBytes}) => uploadedBytes > 0), 'no update went to the GPU in parts');
+    await call(page, 'stop');
+    await page.close();
+  });
+}
+
+test('it comes back after a server that was killed, and after a context that was lost', async () => {
+  const [child, address] = await start('127.0.0.1:0');
+  const page = await open('webgl');
+  await call(page, 'start', `ws://${address}`);
+  await updates(page, 15);
+  child.kill('SIGKILL');
+  await page.waitForFunction(() => window.page.events().some(({type}) => type === 'lost'));
+  const [again] = await start(address);
+  const before = (await call(page, 'seen')).length;
+  await updates(page, before + 15);
+  await call(page, 'lose');
+  await updates(page, (await call(page, 'seen')).length + 5);
+  const seen = await call(page, 'seen');
+  const [first, then] = [fromWhole(seen.slice(0, before)), fromWhole(seen.slice(before))];
+  for (const {color, vis} of [...first, ...then]) assert.ok(states.has(`${color} ${vis}`));
+  for (const {color, gpu} of then.slice(-3)) assert.equal(gpu, color);
+  await call(page, 'stop');
+  again.kill();
+  await page.close();
+});
+
+test('a wrong token is said', async () => {
+  const [child, address] = await start('127.0.0.1:0', '--token', 'a'.repeat(32));
+  const page = await open('webgl');
+  for (const [token, wanted] of [['b'.repeat(32), 'closed'], ['a'.repeat(32), 'connected']]) {
+    await call(page, 'start', `ws://${address}`, {token});
+    await page.waitForFunction((type) => window.page.events().some((one) => one.type === type), {}, wanted);
+    if (wanted === 'closed') assert.match((await call(page, 'events')).at(-1).reason, /token|authoris|authent/i);
+    await call(page, 'stop');
+  }
+  child.kill();
+  await page.close();
+});
+
+test('a server that is not there is said', async () => {
+  const page = await open('webgl');
+  await call(page, 'start', 'ws://127.0.0.1:9');
+  await page.waitForFunction(() => window.page.events().some(({type}) => type === 'lost'));
+  const [first] = await call(page, 'events');
+  assert.ok(first.wait > 0 && first.why.length > 0, JSON.stringify(first));
+  await call(page, 'stop');
+  assert.equal(await call(page, 'textures'), 0);
+  await page.close();
+});
