@@ -8,6 +8,7 @@ import {after, before, test} from 'node:test';
 
 import {CHROMIUM_WITH_GPU, launch, pageOf, serve} from './browser_support.mjs';
 import {program} from './support.mjs';
+import {open} from 'gicodec';
 
 const VIEW = {eye: [-3, 1.6, -8], target: [0, 1.4, -14], fov: 60, width: 160, height: 120};
 let browser, server, folder;
@@ -30,6 +31,15 @@ after(async () => {
   rmSync(folder, {recursive: true, force: true});
 });
 
+/** Probes whose block of visibility is not zero: 18×18 texels of 4 bytes, 16·8 tiles a row. */
+function active() {
+  const file = readFileSync(join(folder, 'out/vis.0000.raw'));
+  const words = new Uint32Array(file.buffer, file.byteOffset, file.length / 4);
+  const found = new Set();
+  words.forEach((word, i) => word !== 0 && found.add(Math.floor(i / (18 * 128) / 18) * 128 + Math.floor(i % (18 * 128) / 18)));
+  return found.size;
+}
+
 for (const name of ['webgl', 'webgpu']) {
   test(`${name} shades as gi-render does`, async () => {
     const page = await browser.newPage();
@@ -43,6 +53,11 @@ for (const name of ['webgl', 'webgpu']) {
         found.texels[i], readFileSync(join(folder, `out/${texture}.0000.raw`)).toString('base64'), texture));
     assert.ok(found.kept > found.pixels / 3, `${found.kept} of ${found.pixels} pixels are away from silhouettes`);
     assert.ok(found.psnr >= 35, `${found.psnr} dB`);
+    const {volumes: [{geometry}]} = await open(readFileSync(join(folder, 'villa.gic')));
+    found.first.forEach((at, axis) => assert.ok(Math.abs(at - geometry.origin[axis]) < 1e-5));
+    assert.equal(found.shown, active());
+    assert.ok(found.helperDiffers > 100 && found.ageDiffers > 100, `${found.helperDiffers} ${found.ageDiffers}`);
+    assert.equal(found.unhelped, 0);
     assert.ok(found.lit > 0);
     assert.equal(found.dark, 0);
     assert.equal(found.hidden, 0);

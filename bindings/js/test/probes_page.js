@@ -2,7 +2,7 @@
 import * as THREE from 'three';
 import {EXRLoader} from 'three/addons/loaders/EXRLoader.js';
 import {GLTFLoader} from 'three/addons/loaders/GLTFLoader.js';
-import {GILoader} from 'gicodec/three';
+import {GILoader, ProbeVolumeHelper} from 'gicodec/three';
 
 const webgpu = new URLSearchParams(location.search).has('webgpu');
 let renderer;
@@ -112,6 +112,15 @@ window.page = {
     const lit = await draw(scene, camera, width, height);
 
     const texels = await Promise.all(Object.values(probes.textures).map(readTexels));
+    const helper = new ProbeVolumeHelper(probes);
+    probes.add(helper);
+    const helped = await draw(scene, camera, width, height);
+    const {shown} = helper;
+    helper.colors = 'age';
+    helper.update(performance.now() + 1e6);
+    const aged = await draw(scene, camera, width, height);
+    helper.dispose();
+    const unhelped = await draw(scene, camera, width, height);
     probes.visible = false;
     const hidden = await draw(scene, camera, width, height);
     probes.removeFromParent();
@@ -136,9 +145,11 @@ window.page = {
         meanWanted += wanted / (3 * kept.length);
       }
     }
+    const differing = (a, b) => a.reduce((count, value, i) => count + (value !== b[i]), 0);
     const sum = (pixels) => pixels.reduce((all, value, i) => all + (i % 4 === 3 ? 0 : value), 0);
     return {psnr: -10 * Math.log10(error / (3 * kept.length)), kept: kept.length, pixels: width * height, peak, mean, meanWanted,
-            dark: sum(dark), lit: sum(lit), hidden: sum(hidden), after: sum(after), states,
+            shown, helperDiffers: differing(lit, helped), ageDiffers: differing(helped, aged), unhelped: differing(lit, unhelped),
+            first: probes.probePosition(0).toArray(), dark: sum(dark), lit: sum(lit), hidden: sum(hidden), after: sum(after), states,
             texels: texels.map(base64)};
   },
 };

@@ -55,10 +55,32 @@ export class ProbeVolume extends Light {
   /** As they are on the GPU, texel for texel those of the container. */
   readonly textures: {readonly color: DataArrayTexture, readonly visibility: DataArrayTexture};
   light(object: Object3D): void;
+  /** Probes along each axis. A probe's number is x + nx·(y + ny·z). */
+  readonly grid: readonly number[];
+  isActive(probe: number): boolean;
+  /** Where a probe stands, before the volume is moved. */
+  probePosition(probe: number, target?: Vector3): Vector3;
+  /** When each probe changed last, as performance.now() says it. */
+  readonly changedAt: Float64Array;
   readonly states: readonly State[];
   /** A time, for the last state at or before it, or a name. */
   state: number | string;
   setState(state: number | string): Promise<void>;
+}
+
+/**
+ * The bounds of a ProbeVolume and a sphere for each active probe: `volume.add(new ProbeVolumeHelper(volume))`.
+ * Spheres have the mean light of their probes, or fade in `fade` milliseconds after their last change.
+ */
+export class ProbeVolumeHelper extends Group {
+  constructor(volume: ProbeVolume, options?: {radius?: number, colors?: 'light' | 'age', fade?: number});
+  colors: 'light' | 'age';
+  fade: number;
+  /** How many probes are active. */
+  readonly shown: number;
+  /** Shows what is new. */
+  update(now?: number): void;
+  dispose(): void;
 }
 
 export interface GIClientOptions extends ClientOptions {

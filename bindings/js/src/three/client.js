@@ -92,7 +92,11 @@ export class GIClient extends EventDispatcher {
     for (const {id, textures, ...rest} of volumes) {
       const volume = {...rest, metadata: {}, firstTexture: 0, textures: textures.length};
       const whole = textures.map((one) => ({...one, metadata: {}}));
-      if (!probeTextures(volume, whole)) continue;
+      if (!probeTextures(volume, whole)) {
+        console.info(`GIClient: ${JSON.stringify(volume.name)} is not shown: it is of kind ${volume.kind}, or has no ` +
+                     'irradiance and visibility');
+        continue;
+      }
       const light = new ProbeVolume(volume, whole, this.#renderer);
       const texels = whole.map(({arrayType, textureBytes}) => new globalThis[arrayType](
           textureBytes / globalThis[arrayType].BYTES_PER_ELEMENT));
@@ -132,10 +136,10 @@ export class GIClient extends EventDispatcher {
     statistics.uploadedBytes += uploaded;
     statistics.decodeMs += decodeMs;
     statistics.uploadMs += uploadMs;
-    if (!before?.connected) this.dispatchEvent({type: 'connected'});
-    this.dispatchEvent({type: 'update', state, blocks, decodeMs, uploadMs, uploadedBytes: uploaded});
     // One update a picture: a page in the background asks for none.
     requestAnimationFrame(() => this.#ended || this.#send({type: 'drawn'}));
+    if (!before?.connected) this.dispatchEvent({type: 'connected'});
+    this.dispatchEvent({type: 'update', state, blocks, decodeMs, uploadMs, uploadedBytes: uploaded});
   }
 
   /** The texels of a volume's textures as of the last update, by name. */

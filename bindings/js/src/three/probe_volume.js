@@ -67,7 +67,6 @@ export class ProbeVolume extends Light {
   #id = ++count;
   #turn;
   #places;
-  #descs;
   #renderer;
   #patched = new Map();
 
@@ -99,7 +98,12 @@ export class ProbeVolume extends Light {
     const [color, visibility] = [textures[places.color], textures[places.visibility]];
     this.name = volume.name;
     this.#places = places;
-    this.#descs = {color, visibility};
+    /** Of the textures, as the container has them. @internal */
+    this.descs = {color, visibility};
+    /** Probes along each axis. */
+    this.grid = grid;
+    /** When each probe changed last, as performance.now() says it. */
+    this.changedAt = new Float64Array(grid[0] * grid[1] * grid[2]).fill(-Infinity);
     this.#turn = turnOf(volume.metadata);
     /** What shaders differ in. */
     this.kind = {words: formatOf(color.format).words, linear: isLinear(volume, color)};
@@ -152,6 +156,23 @@ export class ProbeVolume extends Light {
     });
   }
 
+  /** Whether a probe holds anything, by its number, x + nx·(y + ny·z). */
+  isActive(probe) {
+    return this.uniforms.Active.value.image.data[probe] !== 0;
+  }
+
+  /** Where a probe stands, before the volume is moved. */
+  probePosition(probe, target = new Vector3()) {
+    const [nx, ny] = this.grid;
+    const block = [probe % nx, Math.floor(probe / nx) % ny, Math.floor(probe / (nx * ny))];
+    const {Origin, Spacing, Scroll} = this.uniforms;
+    const cell = block.map((at, axis) => {
+      const scroll = Scroll.value.getComponent(axis), side = this.grid[axis];
+      return scroll + ((at - scroll) % side + side) % side;
+    });
+    return target.set(...cell).multiply(Spacing.value).add(Origin.value).applyMatrix4(this.#turn);
+  }
+
   /** Shows textures by number, all of them. They stay the light's. @internal */
   setTexels(all) {
     const set = (texture, texels) => {
@@ -160,15 +181,18 @@ export class ProbeVolume extends Light {
     };
     set(this.uniforms.Color.value, all.get(this.#places.color));
     set(this.uniforms.Visibility.value, all.get(this.#places.visibility));
-    this.#settle(Array.from({length: this.#descs.visibility.blocks}, (_, block) => block));
+    this.#settle(Array.from({length: this.descs.visibility.blocks}, (_, block) => block));
+    this.changedAt.fill(performance.now());
   }
 
   /** Shows what changed in blocks of a texture. Returns the bytes that went to the GPU at once. @internal */
   setBlocks(texture, blocks) {
     const name = Object.keys(this.#places).find((one) => this.#places[one] === texture);
     if (!name) return 0;
+    const now = performance.now();
+    for (const block of blocks) this.changedAt[block] = now;
     if (name === 'visibility') this.#settle(blocks);
-    return uploadBlocks(this.#renderer, this.textures[name], this.#descs[name], blocks);
+    return uploadBlocks(this.#renderer, this.textures[name], this.descs[name], blocks);
   }
 
   /** A probe is active unless its block of visibility is zero. */
@@ -177,7 +201,7 @@ export class ProbeVolume extends Light {
     const bytes = new Uint8Array(data.buffer, data.byteOffset, data.byteLength);
     for (const block of blocks) {
       let any = 0;
-      forRows(this.#descs.visibility, block, (first, end) => {
+      forRows(this.descs.visibility, block, (first, end) => {
         for (let i = first; i < end && any === 0; ++i) any |= bytes[i];
       });
       active.image.data[block] = any === 0 ? 0 : 255;
@@ -190,9 +214,8 @@ export class ProbeVolume extends Light {
     this.uniforms.Origin.value.set(...origin);
     this.uniforms.Spacing.value.set(...spacing);
     this.uniforms.Scroll.value.set(...scroll);
-    const {grid} = this.#descs.color;
     const corner = (cell) => new Vector3(...origin.map((at, axis) => at + (scroll[axis] + cell(axis)) * spacing[axis]));
-    this.boundingBox.set(corner(() => 0), corner((axis) => grid[axis] - 1)).applyMatrix4(this.#turn);
+    this.boundingBox.set(corner(() => 0), corner((axis) => this.grid[axis] - 1)).applyMatrix4(this.#turn);
   }
 
   dispose() {
