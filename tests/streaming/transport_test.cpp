@@ -15,9 +15,13 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
+#include <fstream>
 #include <memory>
 #include <numeric>
 #include <random>
+#include <string_view>
+#include <vector>
 
 namespace gicodec::streaming {
 namespace {
@@ -163,7 +167,7 @@ TEST(WebLink, WhatIsNoMessageFloodsInTheEnd) {
 TEST(WebPage, TellsNobodyWhatIsNotForThem) {
   const Shown shown{"gicodec_clients 1\n", 100};
   const auto status = [&](const WebRequest& request, const std::string& token, double now = 101) {
-    return web_answer(request, shown, token, now).substr(9, 3);
+    return web_answer(request, shown, token, now).head.substr(9, 3);
   };
   EXPECT_EQ(status({true, "/health", "", false}, ""), "200");
   EXPECT_EQ(status({true, "/health", "", false}, "", 1000), "503");
@@ -175,6 +179,57 @@ TEST(WebPage, TellsNobodyWhatIsNotForThem) {
   EXPECT_EQ(status({true, "/metrics", "", true}, "secret"), "404");
   EXPECT_EQ(status({true, "/metrics", "Bearer secret", false}, "secret"), "200");
   EXPECT_EQ(status({true, "/metrics", "secret", false}, "secret"), "404");
+}
+
+TEST(WebPage, FilesAreThoseOfTheFolder) {
+  const std::filesystem::path folder = testing::TempDir() + "gicodec_page";
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder / "assets");
+  EXPECT_THROW(WebFiles{folder.string()}, tools::Error);  // no index.html
+  EXPECT_THROW(WebFiles{(folder / "absent").string()}, tools::Error);
+  const auto write = [&](const char* name, std::string_view text) {
+    std::ofstream(folder / name) << text;
+  };
+  write("index.html", "<html>");
+  write("assets/a.js", "x");
+  const WebFiles files(folder.string());
+  const auto ask = [&](const char* path, bool get = true) {
+    return web_answer({get, path, "", false}, {}, "", 1, files);
+  };
+  for (const char* path : {"/", "/index.html"}) {
+    EXPECT_EQ(ask(path).rest, "<html>") << path;
+    EXPECT_NE(ask(path).head.find("text/html; charset=utf-8"), std::string::npos);
+  }
+  EXPECT_EQ(ask("/assets/a.js").rest, "x");
+  EXPECT_NE(ask("/assets/a.js").head.find("Content-Length: 1\r\n"), std::string::npos);
+  for (const char* part : {"script-src 'self' 'wasm-unsafe-eval'",
+                           "worker-src 'self' blob:", "frame-ancestors 'none'", "nosniff"}) {
+    EXPECT_NE(ask("/").head.find(part), std::string::npos) << part;
+  }
+  for (const char* path : {"", "index.html", "/assets", "/assets/", "/assets/../index.html",
+                           "/../gicodec_page/index.html", "//index.html", "/ASSETS/a.js"}) {
+    EXPECT_EQ(ask(path).head.substr(9, 3), "404") << path;
+    EXPECT_TRUE(ask(path).rest.empty());
+  }
+  EXPECT_EQ(ask("/", false).head.substr(9, 3), "404");
+  std::filesystem::remove_all(folder);
+}
+
+/// Any page can ask a browser to connect to this machine's servers.
+TEST(WebPage, OriginsAreChecked) {
+  const std::vector<std::string> none, one{"https://example.org"}, all{"*"};
+  EXPECT_TRUE(may_connect("", "127.0.0.1:80", none));  // no browser
+  EXPECT_TRUE(may_connect("http://127.0.0.1:8080", "127.0.0.1:8080", none));
+  EXPECT_TRUE(may_connect("https://h:8443", "h:8443", none));
+  for (const char* origin :
+       {"http://127.0.0.1:8081", "http://127.0.0.1", "null", "https://", "ftp://127.0.0.1:8080",
+        "http://127.0.0.1:8080.evil.org", "https://example.org"}) {
+    EXPECT_FALSE(may_connect(origin, "127.0.0.1:8080", none)) << origin;
+  }
+  EXPECT_TRUE(may_connect("https://example.org", "h", one));
+  EXPECT_FALSE(may_connect("https://example.org:1", "h", one));
+  EXPECT_FALSE(may_connect("http://example.org", "h", one));
+  EXPECT_TRUE(may_connect("null", "h", all));
 }
 
 }  // namespace

@@ -80,10 +80,16 @@ std::string Service::reload() {
 void Service::show() {
   if (!options_.web || now() - shown_ < kShow) return;
   shown_ = now();
-  if (const auto [turned_away, last] = net_.turned_away(); turned_away > 0) {
-    dropped_[Reason::full] += turned_away;
+  const TurnedAway turned_away = net_.turned_away();
+  if (turned_away.origins > 0) {
+    log("{} of pages of other origins refused, the last one {}; --allow-origin {} lets its pages "
+        "in",
+        count(turned_away.origins, "connection"), turned_away.last_origin, turned_away.last_origin);
+  }
+  if (turned_away.count > 0) {
+    dropped_[Reason::full] += turned_away.count;
     log("{} turned away, the last one {} (--max-per-address, --max-clients)",
-        count(turned_away, "connection"), last);
+        count(turned_away.count, "connection"), turned_away.last);
   }
   net_.show(metrics_text({server_.connections().value_or({}).size(), connections_.size(),
                           server_.updates(), server_.memory(), access_->unheard(), dropped_,

@@ -202,6 +202,18 @@ void add_web_flags(tools::Command& app, ServerFlags& o) {
       ->type_name("NAME FILE")
       ->expected(2)
       ->group(group);
+  app.add_option("--web-page", o.web.page,
+                 "Folder of the page that a browser gets at --listen-web; default: the one that is "
+                 "installed, if it is; \"none\": no page")
+      ->type_name("FOLDER")
+      ->group(group);
+  app.add_option("--allow-origin", o.web.origins,
+                 "Lets pages of another origin connect, such as https://example.org; \"*\": all "
+                 "pages; may be repeated")
+      ->type_name("ORIGIN")
+      ->group(group)
+      ->expected(1)
+      ->take_all();
   app.add_option("--metrics-token-file", o.metrics_token_file,
                  "Show /metrics to those who know the first line of this file as a bearer token; "
                  "else to this machine alone")

@@ -21,6 +21,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <set>
 #include <sstream>
 #include <thread>
@@ -199,13 +200,23 @@ void summarise_nothing(const ServerFlags& o) {
   ServerStatistics(o.service.statistics, {}).finish(server, now());
 }
 
+/// The folder of the page beside the installed program; empty if there is none.
+std::string installed_page() {
+  std::error_code failed;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", failed);
+  if (failed) return "";
+  const auto folder = program.parent_path().parent_path() / "share/gicodec/web";
+  return std::filesystem::exists(folder / "index.html", failed) ? folder.string() : "";
+}
+
 /// Reads the addresses to listen at. Refuses those without the protection a user would expect.
 void take_addresses(ServerFlags& o) {
   if (o.listen_web.empty()) {
     if (!o.web.certificate.empty() || !o.web.key.empty() || o.insecure_web ||
-        !o.metrics_token_file.empty())
+        !o.metrics_token_file.empty() || !o.web.page.empty() || !o.web.origins.empty())
       fail(Exit::usage,
-           "--certificate, --key, --insecure-web and --metrics-token-file are for --listen-web");
+           "--certificate, --key, --insecure-web, --web-page, --allow-origin and "
+           "--metrics-token-file are for --listen-web");
     if (o.listen.empty()) o.listen = "127.0.0.1:0";
   }
   if (!o.listen.empty()) o.service.listen = parse_address(o.listen, "--listen");
@@ -228,6 +239,8 @@ void take_addresses(ServerFlags& o) {
          "without");
   if (!o.metrics_token_file.empty())
     o.web.metrics_token = read_token({"", o.metrics_token_file}).text;
+  if (o.web.page.empty()) o.web.page = installed_page();
+  if (o.web.page == "none") o.web.page.clear();
   o.service.web = o.web;
 }
 

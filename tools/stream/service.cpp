@@ -87,12 +87,16 @@ void Service::begin() {
   for (const std::string& remark : remarks_) log("{}", remark);
   std::vector<std::uint16_t> ports = net_.ports();
   write_ports(options_.port_file, ports);
-  std::string where;
+  std::string where, page;
   for (const Address* address : {options_.listen ? &*options_.listen : nullptr,
                                  options_.web ? &options_.web->address : nullptr}) {
     if (address == nullptr) continue;
-    where += (where.empty() ? "" : " and ") +
-             to_string(Address{address->host, ports.front(), address->via});
+    const Address at{address->host, ports.front(), address->via};
+    where += (where.empty() ? "" : " and ") + to_string(at);
+    if (at.via != Via::enet && !options_.web->page.empty()) {
+      page = fmt::format("http{}://{}/?server", at.via == Via::web ? "s" : "",
+                         to_string(Address{at.host, at.port, Via::enet}));
+    }
     ports.erase(ports.begin());
   }
   std::string what;
@@ -109,6 +113,7 @@ void Service::begin() {
   }
   if (is_probes(volumes_[0])) what += fmt::format(", {} active", active_);
   log("{}; listening on {}", what, where);
+  if (!page.empty()) log("to look at it in a browser: {}", page);
 }
 
 void Service::update() {

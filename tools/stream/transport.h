@@ -63,10 +63,12 @@ struct NetEvent {
   bool final = false;  ///< closed: another attempt would fail the same way
 };
 
-/// Connections that were closed unheard, for lack of room or memory.
+/// Connections that were closed unheard.
 struct TurnedAway {
-  std::uint64_t count = 0;
-  std::string last;  ///< its address
+  std::uint64_t count = 0;    ///< for lack of room or memory
+  std::string last;           ///< its address
+  std::uint64_t origins = 0;  ///< because they came from pages that may not connect
+  std::string last_origin;
 };
 
 /// How a client authenticates its server.
@@ -91,6 +93,8 @@ struct WebListen {
   Address address;
   std::string certificate, key;  ///< PEM files; empty: no encryption
   std::string metrics_token;     ///< lets a reader see the metrics; empty: only this machine may
+  std::string page = {};         ///< folder of a page that it serves; empty: none
+  std::vector<std::string> origins = {};  ///< whose pages may connect, besides its own; "*": all
 };
 
 }  // namespace gicodec::streaming

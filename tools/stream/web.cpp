@@ -28,6 +28,7 @@ struct Web::State : WebState {
 Web::Web(const WebListen& listen, TlsContext certificate, const NetOptions& options)
     : state_(std::make_unique<State>(options)) {
   state_->listen = listen;
+  if (!listen.page.empty()) state_->files = WebFiles(listen.page);
   allow_files(options.links + HalfOpen::kMax + kFiles);
   state_->listener = listen_tcp(listen.address);
   state_->loop = std::make_unique<WebLoop>(*state_, std::move(certificate));

@@ -16,6 +16,8 @@ constexpr std::size_t kChunk = 64 << 10;  ///< bytes that leave at once
 /// Seconds that a client has to read the reason and to close. If the server closed with unread
 /// bytes of the client, the reset would overtake the reason.
 constexpr double kReading = 0.4;
+constexpr int kChunkSeconds = 10;        ///< in which kChunk of a page must leave
+constexpr double kPageSeconds = 120;     ///< in which a file of it must
 constexpr std::size_t kLocation = 4096;  ///< bytes; libwebsockets takes no longer heads
 
 }  // namespace
@@ -195,19 +197,45 @@ int WebLoop::Loop::answer(WebLink* link, lws* wsi) {
   const WebRequest request{lws_hdr_total_length(wsi, WSI_TOKEN_GET_URI) > 0,
                            header(wsi, WSI_TOKEN_GET_URI),
                            header(wsi, WSI_TOKEN_HTTP_AUTHORIZATION), link->peer.loopback};
+  link->page = web_answer(request, what, state.listen.metrics_token, now(), state.files);
+  link->answering = true;
+  lws_callback_on_writable(wsi);
+  return 0;
+}
+
+int WebLoop::Loop::write_page(WebLink* link, lws* wsi) {
+  if (!link->answering) return 0;
+  auto& [head, rest] = link->page;
+  if (head.empty() && rest.empty()) return -1;  // One answer for each connection.
+  const std::size_t size = std::min(rest.size(), kChunk);
   std::string text(LWS_PRE, '\0');
-  text += web_answer(request, what, state.listen.metrics_token, now());
-  lws_write(wsi, reinterpret_cast<unsigned char*>(text.data()) + LWS_PRE, text.size() - LWS_PRE,
-            LWS_WRITE_HTTP_FINAL);
-  return -1;  // One answer for each connection.
+  text.append(std::exchange(head, {})).append(rest.substr(0, size));
+  rest.remove_prefix(size);
+  lws_set_timeout(wsi, PENDING_TIMEOUT_HTTP_CONTENT, kChunkSeconds);
+  const auto kind = rest.empty() ? LWS_WRITE_HTTP_FINAL : LWS_WRITE_HTTP;
+  if (lws_write(wsi, reinterpret_cast<unsigned char*>(text.data()) + LWS_PRE, text.size() - LWS_PRE,
+                kind) < 0) {
+    return -1;
+  }
+  lws_callback_on_writable(wsi);  // once these bytes have left
+  return 0;
+}
+
+int WebLoop::Loop::admit(lws* wsi) {
+  std::string origin = header(wsi, WSI_TOKEN_ORIGIN);
+  if (may_connect(origin, header(wsi, WSI_TOKEN_HOST), state.listen.origins)) return 0;
+  const std::lock_guard lock(state.mutex);
+  ++state.turned_away.origins;
+  state.turned_away.last_origin = std::move(origin);
+  return -1;
 }
 
 void WebLoop::Loop::look_after_all() {
   const double at = now();
   std::vector<WebLink*> ends;
   for (WebLink* const link : half_open.all()) {
-    if (at - link->created > state.options.open_timeout && link->wsi != nullptr)
-      ends.push_back(link);
+    const double most = link->answering ? kPageSeconds : state.options.open_timeout;
+    if (at - link->created > most && link->wsi != nullptr) ends.push_back(link);
   }
   std::vector<WebLink*> open;
   {

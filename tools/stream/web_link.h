@@ -3,6 +3,7 @@
 
 #include "tcp.h"
 #include "transport.h"
+#include "web_page.h"
 
 #include <atomic>
 #include <cstdint>
@@ -39,6 +40,8 @@ struct WebLink {
   Message partial;                          ///< the incomplete message that is arriving
   std::uint64_t payload = 0, messages = 0;  ///< received
   TcpState tcp;
+  WebAnswer page;  ///< to a plain request: what has not left
+  bool answering = false;
 
   // Guarded by the transport's mutex.
   std::list<NetEvent> last = std::list<NetEvent>(1);  ///< memory for the event of its end

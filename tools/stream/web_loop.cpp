@@ -140,10 +140,12 @@ int WebLoop::Loop::take(lws* wsi, lws_callback_reasons reason, void* user, void*
     }
     case LWS_CALLBACK_HTTP:
       return answer(link, wsi);
+    case LWS_CALLBACK_HTTP_WRITEABLE:
+      return write_page(link, wsi);
     case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION:
       return header(wsi, WSI_TOKEN_GET_URI) == "/" &&
                      lws_hdr_total_length(wsi, WSI_TOKEN_PROTOCOL) > 0
-                 ? 0
+                 ? admit(wsi)
                  : -1;
     case LWS_CALLBACK_CLIENT_APPEND_HANDSHAKE_HEADER:  // Nothing was sent yet.
       if (link->server.via != Via::plain_web || peer_is_here(lws_get_socket_fd(wsi))) return 0;

@@ -47,6 +47,10 @@ struct WebLoop::Loop {
   int write(WebLink* link);
   void gone(WebLink* link, std::string_view reason);
   int answer(WebLink* link, lws* wsi);
+  /// Sends the next bytes of an answer; the last ones end the connection.
+  int write_page(WebLink* link, lws* wsi);
+  /// 0 if a page may connect from where it is, else -1.
+  int admit(lws* wsi);
   void look_after_all();
   /// Ends the connection soon. Does nothing for a link that libwebsockets does not have.
   static void kill(WebLink* link) {

@@ -1,8 +1,16 @@
 #include "web_page.h"
 
+#include "dump/error.h"
+#include "dump/file_system.h"
 #include "secrets.h"
 
 #include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 
 namespace gicodec::streaming {
 namespace {
@@ -10,11 +18,47 @@ namespace {
 constexpr double kStale = 15;  ///< seconds after which a server that shows nothing is unhealthy
 constexpr const char* kBearer = "Bearer ";
 
-std::string page(const char* status, const char* type, const std::string& body) {
+/// What a browser may load and run there; a page says the same of itself.
+constexpr const char* kPolicy =
+    "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self' blob:; style-src "
+    "'self'; img-src 'self' blob: data:; connect-src 'self' blob: data: http: https: ws: wss:; "
+    "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+
+constexpr std::array<std::pair<std::string_view, const char*>, 8> kTypes{{
+    {".html", "text/html; charset=utf-8"},
+    {".js", "text/javascript; charset=utf-8"},
+    {".css", "text/css; charset=utf-8"},
+    {".wasm", "application/wasm"},
+    {".glb", "model/gltf-binary"},
+    {".gic", "application/octet-stream"},
+    {".svg", "image/svg+xml"},
+    {".png", "image/png"},
+}};
+
+const char* type_of(std::string_view path) {
+  const auto found =
+      std::ranges::find_if(kTypes, [&](const auto& row) { return path.ends_with(row.first); });
+  return found == kTypes.end() ? "application/octet-stream" : found->second;
+}
+
+std::string contents_of(const std::string& path) {
+  std::ifstream stream(tools::native_path(path), std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  if (!stream || bytes.empty())
+    tools::fail(tools::Exit::io, "{}: cannot be read, or is empty", path);
+  return bytes;
+}
+
+std::string head_of(const char* status, std::string_view type, std::size_t bytes) {
   return fmt::format(
       "HTTP/1.1 {}\r\nContent-Type: {}\r\nContent-Length: {}\r\nCache-Control: no-store\r\n"
-      "Connection: close\r\n\r\n{}",
-      status, type, body.size(), body);
+      "Content-Security-Policy: {}\r\nX-Content-Type-Options: nosniff\r\n"
+      "Referrer-Policy: no-referrer\r\nConnection: close\r\n\r\n",
+      status, type, bytes, kPolicy);
+}
+
+WebAnswer page(const char* status, const char* type, const std::string& body) {
+  return {head_of(status, type, body.size()) + body, {}};
 }
 
 bool may_measure(const WebRequest& request, const std::string& token) {
@@ -23,8 +67,40 @@ bool may_measure(const WebRequest& request, const std::string& token) {
 
 }  // namespace
 
-std::string web_answer(const WebRequest& request, const Shown& shown,
-                       const std::string& metrics_token, double now) {
+WebFiles::WebFiles(const std::string& folder) {
+  namespace fs = std::filesystem;
+  constexpr std::uint64_t kMost = std::uint64_t{64} << 20;
+  std::uint64_t bytes = 0;
+  const fs::path top = tools::native_path(folder);
+  try {
+    for (const auto& entry : fs::recursive_directory_iterator(top)) {
+      if (!entry.is_regular_file()) continue;
+      bytes += entry.file_size();
+      if (bytes > kMost) {
+        tools::fail(tools::Exit::io, "{}: more than {} bytes are no page; give the folder of one",
+                    folder, kMost);
+      }
+      const std::string path = tools::path_text(entry.path());
+      std::string name = "/" + tools::path_text(entry.path().lexically_relative(top));
+      files_[std::move(name)] = {type_of(path), contents_of(path)};
+    }
+  } catch (const fs::filesystem_error& error) {
+    tools::fail(tools::Exit::io, "{}: cannot be read: {}", folder, error.code().message());
+  }
+  const auto index = files_.find("/index.html");
+  if (index == files_.end()) {
+    tools::fail(tools::Exit::io, "{}: has no index.html; give the folder of a page", folder);
+  }
+  files_["/"] = index->second;
+}
+
+const WebFiles::File* WebFiles::find(std::string_view path) const {
+  const auto found = files_.find(path);
+  return found == files_.end() ? nullptr : &found->second;
+}
+
+WebAnswer web_answer(const WebRequest& request, const Shown& shown,
+                     const std::string& metrics_token, double now, const WebFiles& files) {
   if (request.get && request.path == "/health") {
     return now - shown.at <= kStale
                ? page("200 OK", "text/plain", "ok\n")
@@ -32,7 +108,19 @@ std::string web_answer(const WebRequest& request, const Shown& shown,
   }
   if (request.get && request.path == "/metrics" && may_measure(request, metrics_token))
     return page("200 OK", "text/plain; version=0.0.4", shown.metrics);
-  return page("404 Not Found", "text/plain", "not found\n");
+  const WebFiles::File* const file = request.get ? files.find(request.path) : nullptr;
+  if (file == nullptr) return page("404 Not Found", "text/plain", "not found\n");
+  return {head_of("200 OK", file->type, file->bytes.size()), file->bytes};
+}
+
+bool may_connect(std::string_view origin, std::string_view host,
+                 const std::vector<std::string>& allowed) noexcept {
+  if (origin.empty()) return true;
+  for (const std::string_view scheme : {"https://", "http://"}) {
+    if (origin.starts_with(scheme) && origin.substr(scheme.size()) == host) return true;
+  }
+  return std::ranges::any_of(allowed,
+                             [&](const std::string& one) { return one == "*" || one == origin; });
 }
 
 }  // namespace gicodec::streaming

@@ -52,6 +52,7 @@ struct WebState {
 
   NetOptions options;
   WebListen listen;
+  WebFiles files;     ///< of listen.page
   int listener = -1;  ///< socket, if it waits for connections; the loop closes it
   int wake_up = -1;   ///< readable while there are events
 

@@ -12,7 +12,8 @@ export const project = dirname(dirname(fileURLToPath(import.meta.url)));
 const tools = createRequire(join(process.env.GICODEC_JS_TOOLS, 'package.json'));
 export const tool = (name) => import(pathToFileURL(tools.resolve(name)));
 
-const TYPES = {'.js': 'text/javascript', '.html': 'text/html', '.gic': 'application/octet-stream', '.wasm': 'application/wasm'};
+const TYPES = {'.js': 'text/javascript', '.css': 'text/css', '.html': 'text/html', '.gic': 'application/octet-stream',
+               '.wasm': 'application/wasm'};
 const QUIET = ['--no-sandbox', '--disable-background-networking', '--disable-component-update', '--disable-sync', '--no-first-run'];
 
 export async function launch(flags = []) {

@@ -21,7 +21,7 @@ async function start(address, ...options) {
   const ports = join(folder, 'ports');
   rmSync(ports, {force: true});
   const child = spawn(program('gi-server'), ['--play', join(folder, 'room.gic'), '--loop', '--listen-web', address,
-                                             '--insecure-web', '--proofs', '--port-file', ports, ...options], {stdio: 'ignore'});
+                                             '--insecure-web', '--proofs', '--allow-origin', '*', '--port-file', ports, ...options], {stdio: 'ignore'});
   for (const end = Date.now() + 30000; !existsSync(ports); await setTimeout(50)) {
     assert.ok(child.exitCode === null && Date.now() < end, 'gi-server does not start');
   }

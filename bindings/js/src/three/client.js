@@ -1,6 +1,5 @@
 // GIClient: the light of a gi-server in a scene, as it changes.
 import {EventDispatcher, Group, Vector3} from 'three';
-import {compiledClient} from 'gicodec:entry/client';
 import workerText from 'gicodec:text/three/client_worker';
 
 import {ClientHost} from './client_host.js';
@@ -42,6 +41,7 @@ export class GIClient extends EventDispatcher {
   }
 
   async #start(worker, message) {
+    const {compiledClient} = await import('gicodec:entry/client');  // with its own module
     const module = await compiledClient();
     if (this.#renderer.isWebGPURenderer) await ProbeVolume.useNodes(this.#renderer);
     if (this.#ended) return;

@@ -1,0 +1,172 @@
+// A page to drop a .gic file on, or to watch a gi-server by: ?file=URL, ?scene=URL, ?server=URL.
+import {GIClient, GILoader} from 'gicodec/three';
+
+import {Graphs} from './graphs.js';
+import {hideError, showError, showFacts, showProgress, showTitle} from './notices.js';
+import {Stage} from './stage.js';
+import {Timeline} from './timeline.js';
+
+const find = (id) => document.getElementById(id);
+const stage = new Stage(find('view'));
+const timeline = new Timeline();
+let live = null, graphs = null;
+
+const megabytes = (bytes) => `${(bytes * 1e-6).toFixed(bytes < 1e7 ? 2 : 1)} MB`;
+const lightsOf = (object) => (object.isGroup ? [...object.children] : [object]);
+
+function disconnect() {
+  live?.dispose();
+  graphs?.end();
+  live = graphs = null;
+}
+
+/** Shows a container: bytes, a File or a URL. `beside`: to be compared with what is shown. */
+async function openContainer(source, name, beside = false) {
+  const loader = new GILoader().detectSupport(stage.renderer);
+  let size = source.size ?? source.byteLength ?? 0;
+  const object = typeof source === 'string'
+    ? await loader.loadAsync(source, ({loaded, total}) => { size = total; showProgress(total ? loaded / total : 0.5); })
+    : await loader.parse(source);
+  const lights = lightsOf(object);
+  if (beside) {
+    stage.setLights([object], true);
+    find('difference').hidden = false;
+    find('difference').firstElementChild.click();
+    return;
+  }
+  disconnect();
+  stage.setLights([object]);
+  timeline.follow(lights.filter(({states}) => states));
+  showTitle(name);
+  const [first] = lights;
+  const probes = first.grid ?? first.resolution?.toArray();
+  showFacts([['file', megabytes(size)], ['states', first.states.length], ...(probes ? [['probes', probes.join(' × ')]] : [])]);
+  if (first.isProbeVolume && find('modes').querySelector(':checked').value !== 'direct' && !stage.lit) setProbes('light');
+}
+
+function setProbes(kind) {
+  document.querySelector(`[name=probes][value=${kind}]`).checked = true;
+  stage.probes = kind;
+}
+
+/** Follows a server. */
+function connect(url, token) {
+  disconnect();
+  hideError();
+  timeline.follow([]);
+  showTitle(new URL(url).host);
+  const client = (live = new GIClient(stage.renderer, url, token ? {token} : {}));
+  graphs = new Graphs(find('graphs'));
+  stage.setLights([client.object]);
+  const retry = () => connect(url, token);
+  let framed = false;
+  client.addEventListener('volumes', () => { if (!framed && !stage.lit) setProbes('light'); });
+  client.addEventListener('update', (event) => {
+    graphs?.add(event);
+    stage.refresh();
+    hideError();
+    if (!framed) { framed = true; if (!stage.lit) stage.frame(); }
+    const {statistics, state} = client;
+    showFacts([['received', megabytes(statistics.bytes)], ['updates', state.serial], ['time', `${state.time.toFixed(2)} s`]]);
+  });
+  client.addEventListener('lost', ({wait, why}) => showError(
+      {message: `The connection was lost: ${why}.\nThe next try is in ${(wait * 1e-3).toFixed(1)} s.`}, retry));
+  client.addEventListener('closed', ({reason}) => showError({message: `The server ended the session: ${reason}`}, retry));
+  client.addEventListener('error', ({error}) => showError(error, retry));
+}
+
+/** Opens what was dropped or chosen: scenes first, then containers; a second one is compared. */
+async function openFiles(list) {
+  const files = [...list];
+  const ending = ({name}) => name.slice(name.lastIndexOf('.')).toLowerCase();
+  const scenes = files.filter((file) => ['.glb', '.gltf'].includes(ending(file)));
+  const containers = files.filter((file) => ending(file) === '.gic');
+  const strange = files.filter((file) => !scenes.includes(file) && !containers.includes(file));
+  await guard(async () => {
+    if (strange.length) throw new TypeError(`${strange.map(({name}) => name).join(', ')}: not a .gic, .glb or .gltf file`);
+    for (const scene of scenes) await openScene(await scene.arrayBuffer());
+    for (const [i, file] of containers.entries()) await openContainer(file, file.name, i > 0);
+  });
+}
+
+async function openScene(source) {
+  await stage.setModel(source, ({loaded, total}) => showProgress(total ? loaded / total : 0.5));
+  setProbes('none');
+}
+
+async function guard(body) {
+  hideError();
+  showProgress(0.05);
+  try {
+    await body();
+  } catch (error) {
+    console.error(error);
+    showError(error);
+  } finally {
+    showProgress(null);
+  }
+}
+
+/** Asks for a server and a token, which is kept nowhere. */
+async function askForServer(url, why = '') {
+  const dialog = find('server');
+  find('ask').textContent = why;
+  find('url').value = url;
+  find('token').value = '';
+  dialog.returnValue = '';
+  dialog.showModal();
+  await new Promise((resolve) => dialog.addEventListener('close', resolve, {once: true}));
+  const token = find('token').value;
+  find('token').value = '';
+  if (dialog.returnValue !== 'connect') return;
+  try {
+    connect(find('url').value, token);
+  } catch (error) {
+    showError(error);
+  }
+}
+
+const ownServer = () => `${location.protocol === 'https:' ? 'wss' : 'ws'}://${location.host}`;
+
+function listen() {
+  find('files').onchange = ({target}) => openFiles(target.files);
+  find('connect').onclick = () => askForServer(location.protocol.startsWith('http') ? ownServer() : '');
+  find('toggle').onclick = ({target}) => {
+    find('panel').hidden = !find('panel').hidden;
+    target.setAttribute('aria-expanded', `${!find('panel').hidden}`);
+  };
+  for (const [name, set] of [['mode', (value) => { stage.mode = value; }], ['probes', (value) => { stage.probes = value; }],
+                             ['camera', (value) => { stage.walking = value === 'walk'; find('view').focus(); }]]) {
+    document.querySelectorAll(`[name=${name}]`).forEach((input) => { input.onchange = () => set(input.value); });
+  }
+  find('exposure').oninput = ({target}) => { stage.exposure = Number(target.value); };
+  addEventListener('dragover', (event) => { event.preventDefault(); document.body.classList.add('dropping'); });
+  addEventListener('dragleave', ({relatedTarget}) => relatedTarget || document.body.classList.remove('dropping'));
+  addEventListener('drop', (event) => {
+    event.preventDefault();
+    document.body.classList.remove('dropping');
+    openFiles(event.dataTransfer.files);
+  });
+  find('view').addEventListener('keydown', (event) => {
+    const act = {Space: () => timeline.toggle(), Comma: () => timeline.step(-1), Period: () => timeline.step(1),
+                 KeyF: () => stage.frame()}[event.code];
+    if (act && !event.repeat) { event.preventDefault(); act(); }
+  });
+  stage.onframe = () => live?.setView(stage.camera);
+}
+
+/** What the address asks for. Another server than the page's own is asked about first. */
+async function begin() {
+  const wanted = new URLSearchParams(location.search);
+  const [file, scene, server] = ['file', 'scene', 'server'].map((name) => wanted.get(name));
+  if (scene) await guard(() => openScene(new URL(scene, location.href).href));
+  if (file) await guard(() => openContainer(new URL(file, location.href).href, new URL(file, location.href).pathname.split('/').at(-1)));
+  if (server === null) return;
+  const url = server === '' || server === '1' ? ownServer() : server;
+  if (url.replace(/\/$/, '') === ownServer()) connect(url, '');
+  else await askForServer(url, 'The link to this page asks to connect to another server. Connect only to one that you know.');
+}
+
+listen();
+if (matchMedia('(max-width: 640px)').matches) find('toggle').click();
+begin();

@@ -1,0 +1,83 @@
+// The states of what is open: a slider, and play.
+const find = (id) => document.getElementById(id);
+
+export class Timeline {
+  #objects = [];
+  #states = [];
+  #playing = null;
+  #slider = find('time');
+
+  constructor() {
+    this.#slider.oninput = () => this.#show(Number(this.#slider.value));
+    find('play').onclick = () => this.toggle();
+  }
+
+  /** Follows these objects, which have `states`. */
+  follow(objects) {
+    this.stop();
+    this.#objects = objects;
+    const longest = objects.map(({states}) => states).sort((a, b) => b.length - a.length)[0] ?? [];
+    // States without a time are one unit apart, in their order.
+    this.#states = longest.map((state, place) => ({...state, at: state.time ?? place}));
+    find('timeline').hidden = this.#states.length < 2;
+    if (this.#states.length < 2) return;
+    const times = this.#states.map(({at}) => at);
+    Object.assign(this.#slider, {min: Math.min(...times), max: Math.max(...times)});
+    this.#slider.value = times[0];
+    this.#say(times[0]);
+  }
+
+  /** The state at or before a time. */
+  #at(time) {
+    return this.#states.reduce((best, one) => (one.at <= time && (best === null || one.at >= best.at) ? one : best), null) ?? this.#states[0];
+  }
+
+  #say(time) {
+    const {name, at} = this.#at(time);
+    find('state').textContent = name && at === time ? name : `${Math.round(time * 100) / 100}${name ? ` (${name})` : ''}`;
+  }
+
+  #show(time) {
+    this.#say(time);
+    const state = this.#at(time);
+    const wanted = state.time === null ? state.name : time;
+    return Promise.all(this.#objects.map((object) => object.setState(wanted).catch(() => {})));
+  }
+
+  toggle() {
+    if (this.#playing) return this.stop();
+    find('play').textContent = '⏸';
+    const playing = (this.#playing = {});
+    const times = this.#states.map(({at}) => at);
+    const [first, last] = [Math.min(...times), Math.max(...times)];
+    // A day passes in half a minute, a recording as it was.
+    const speed = last - first > 30 ? (last - first) / 30 : 1;
+    let before = performance.now();
+    const step = async () => {
+      if (this.#playing !== playing) return;
+      const now = performance.now();
+      let time = Number(this.#slider.value) + (now - before) * 1e-3 * speed;
+      before = now;
+      if (time > last) time = first;
+      this.#slider.value = time;
+      await this.#show(time);
+      requestAnimationFrame(step);
+    };
+    requestAnimationFrame(step);
+  }
+
+  stop() {
+    this.#playing = null;
+    find('play').textContent = '▶';
+  }
+
+  /** A step of `count` states. */
+  step(count) {
+    if (this.#states.length < 2) return;
+    this.stop();
+    const times = this.#states.map(({at}) => at).sort((a, b) => a - b);
+    const at = times.indexOf(this.#at(Number(this.#slider.value)).at);
+    this.#slider.value = times[Math.min(times.length - 1, Math.max(0, at + count))];
+    this.#show(Number(this.#slider.value));
+  }
+}
