@@ -30,6 +30,7 @@ void add_encode(Cli& cli);
 void add_info(Cli& cli);
 void add_preview(Cli& cli);
 void add_verify(Cli& cli);
+void add_view(Cli& cli);
 
 /// Adds "--format text|json".
 void add_output_format(Command& command, std::string& format);

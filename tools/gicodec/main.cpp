@@ -20,7 +20,8 @@ constexpr const char* kFooter =
     "  gicodec info villa.gic\n"
     "  gicodec verify villa.gic dumps/villa/*.exr\n"
     "  gicodec decode villa.gic -o out/ && gicodec compare dumps/villa out\n"
-    "  gicodec preview villa.gic --frame 3 -o atlas.png";
+    "  gicodec preview villa.gic --frame 3 -o atlas.png\n"
+    "  gicodec view villa.gic";
 
 }  // namespace
 
@@ -37,6 +38,7 @@ int main(int argc, char** argv) {
   add_compare(cli);
   add_preview(cli);
   add_crop(cli);
+  add_view(cli);
   add_backends(cli);
   return run_program(
       cli.app, argc, argv, [&] { return cli.run(); }, Interrupts::once,

@@ -2,6 +2,7 @@
 #include "clock.h"
 #include "common/backend_flags.h"
 #include "common/error_flags.h"
+#include "common/installed.h"
 #include "common/program.h"
 #include "ddgi/scene_id.h"
 #include "ddgi/scenes.h"
@@ -21,7 +22,6 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
 #include <set>
 #include <sstream>
 #include <thread>
@@ -200,15 +200,6 @@ void summarise_nothing(const ServerFlags& o) {
   ServerStatistics(o.service.statistics, {}).finish(server, now());
 }
 
-/// The folder of the page beside the installed program; empty if there is none.
-std::string installed_page() {
-  std::error_code failed;
-  const auto program = std::filesystem::read_symlink("/proc/self/exe", failed);
-  if (failed) return "";
-  const auto folder = program.parent_path().parent_path() / "share/gicodec/web";
-  return std::filesystem::exists(folder / "index.html", failed) ? folder.string() : "";
-}
-
 /// Reads the addresses to listen at. Refuses those without the protection a user would expect.
 void take_addresses(ServerFlags& o) {
   if (o.listen_web.empty()) {
@@ -239,7 +230,7 @@ void take_addresses(ServerFlags& o) {
          "without");
   if (!o.metrics_token_file.empty())
     o.web.metrics_token = read_token({"", o.metrics_token_file}).text;
-  if (o.web.page.empty()) o.web.page = installed_page();
+  if (o.web.page.empty()) o.web.page = tools::installed_folder("web");
   if (o.web.page == "none") o.web.page.clear();
   o.service.web = o.web;
 }

@@ -7,7 +7,7 @@ import {join} from 'node:path';
 import {after, before, test} from 'node:test';
 import {setTimeout} from 'node:timers/promises';
 
-import {CHROMIUM_WITH_GPU, launch, project, serve, tool} from './browser_support.mjs';
+import {CHROMIUM_WITH_GPU, launch, project, serve} from './browser_support.mjs';
 import {SOURCE, program} from './support.mjs';
 
 let browser, server, folder, live, liveUrl, said = '';
@@ -21,10 +21,8 @@ before(async () => {
   writeFileSync(join(folder, '<img src=x onerror=alert(1)>.gic'), readFileSync(join(folder, 'room.gic')));
   writeFileSync(join(folder, 'bad.gic'), 'no container');
   writeFileSync(join(folder, 'notes.txt'), 'text');
-  process.env.GICODEC_NPM = join(project, 'node_modules/gicodec');
-  const {build} = await tool('vite');
-  await build({root: join(SOURCE, 'tools/web'), configFile: join(SOURCE, 'tools/web/vite.config.js'), logLevel: 'error',
-               build: {outDir: join(folder, 'page'), emptyOutDir: false}});
+  execFileSync(process.execPath, [join(SOURCE, 'tools/web/build.mjs'), '--npm', join(project, 'node_modules/gicodec'),
+                                  '--tools', process.env.GICODEC_JS_TOOLS, '--out', join(folder, 'page')], {stdio: 'inherit'});
   server = await serve({}, [join(folder, 'page'), folder]);
   live = spawn(program('gi-server'), ['--play', join(folder, 'room.gic'), '--loop', '--listen-web', '127.0.0.1:0', '--insecure-web',
                                       '--port-file', join(folder, 'ports'), '--web-page', join(folder, 'page'),
@@ -175,6 +173,25 @@ test('phones, and the dark', async () => {
   assert.ok(fits);
   assert.equal(await page.evaluate(() => getComputedStyle(document.body).backgroundColor), 'rgb(20, 20, 22)');
   assert.deepEqual(wrong, []);
+  await page.close();
+});
+
+test('a page with everything inside, from a disk', async () => {
+  const name = '<img src=x onerror=alert(1)>.gic';
+  execFileSync(program('gicodec'), ['view', name, '--scene', 'room.glb', '--export', 'room.html', '--page', 'page/viewer.html'],
+               {cwd: folder, stdio: 'pipe'});
+  const {page, wrong} = await open('', {url: `file://${folder}/room.html`});
+  const asked = [];
+  page.on('request', (request) => asked.push(request.url()));
+  await page.waitForFunction((wanted) => document.getElementById('title').textContent === wanted, {timeout: 60000}, name);
+  await setTimeout(500);
+  assert.ok(await lit(page) > 0.2);
+  assert.equal(await shown(page, '#connect'), false);
+  assert.deepEqual(wrong, []);
+  assert.deepEqual(asked.filter((url) => !/^(blob|data):/.test(url)), []);
+  const policy = await page.$eval('meta[http-equiv]', ({content}) => content);
+  assert.match(policy, /connect-src 'none'/);
+  assert.match(policy, /script-src 'sha256-[^']+' 'wasm-unsafe-eval';/);
   await page.close();
 });
 

@@ -155,8 +155,23 @@ function listen() {
   stage.onframe = () => live?.setView(stage.camera);
 }
 
-/** What the address asks for. Another server than the page's own is asked about first. */
+/** A file that stands in this page: its bytes and its name; null: there is none. */
+function inside(id) {
+  const element = find(id);
+  if (!element) return null;
+  const text = atob(element.textContent);
+  const bytes = new Uint8Array(text.length);
+  for (let i = 0; i < text.length; ++i) bytes[i] = text.charCodeAt(i);
+  element.textContent = '';
+  return {bytes, name: element.dataset.name};
+}
+
+/** What this page has inside, and what the address asks for. Another server than the page's own is asked about first. */
 async function begin() {
+  const [model, container] = ['scene', 'container'].map(inside);
+  if (model) await guard(() => openScene(model.bytes.buffer));
+  if (container) await guard(() => openContainer(container.bytes, container.name));
+  if (container) return;  // it may connect to nothing
   const wanted = new URLSearchParams(location.search);
   const [file, scene, server] = ['file', 'scene', 'server'].map((name) => wanted.get(name));
   if (scene) await guard(() => openScene(new URL(scene, location.href).href));

@@ -1,7 +1,7 @@
 // The scene, its cameras, and how it is drawn.
 import {
   Box3, DirectionalLight, Mesh, NeutralToneMapping, OrthographicCamera, PerspectiveCamera, PlaneGeometry, Scene, ShaderMaterial,
-  Vector3, WebGLRenderTarget, WebGLRenderer, HalfFloatType,
+  TextureLoader, Vector3, WebGLRenderTarget, WebGLRenderer, HalfFloatType,
 } from 'three';
 import {OrbitControls} from 'three/addons/controls/OrbitControls.js';
 import {GLTFLoader} from 'three/addons/loaders/GLTFLoader.js';
@@ -49,6 +49,10 @@ export class Stage {
   /** Takes a glTF scene, of bytes or a URL. */
   async setModel(source, onProgress) {
     const loader = new GLTFLoader();
+    // Elements of images, which need no permission to connect.
+    loader.register((parser) => ({name: 'images', beforeRoot: async () => {
+      parser.textureLoader = new TextureLoader(parser.options.manager);
+    }}));
     const {scene, cameras: [camera]} = typeof source === 'string'
       ? await loader.loadAsync(source, onProgress) : await loader.parseAsync(source, '');
     this.#model?.removeFromParent();

@@ -1,0 +1,63 @@
+// Builds the page: node build.mjs [--npm build/npm] [--tools build/js] [--out build/web]. `out` gets the page as
+// a server shows it (by Vite), and viewer.html, one file into which gicodec view puts containers.
+import {createHash} from 'node:crypto';
+import {mkdirSync, readFileSync, writeFileSync} from 'node:fs';
+import {createRequire} from 'node:module';
+import {dirname, join, resolve} from 'node:path';
+import {fileURLToPath, pathToFileURL} from 'node:url';
+import {parseArgs} from 'node:util';
+
+const here = dirname(fileURLToPath(import.meta.url));
+const top = join(here, '../..');
+const {values} = parseArgs({options: {
+  npm: {type: 'string', default: join(top, 'build/npm')},
+  tools: {type: 'string', default: join(top, 'build/js')},
+  out: {type: 'string', default: join(top, 'build/web')},
+}});
+const [npm, tools, out] = [values.npm, values.tools, values.out].map((path) => resolve(path));
+const installed = createRequire(join(tools, 'package.json'));
+const three = join(tools, 'node_modules/three');
+
+const {build} = await import(pathToFileURL(installed.resolve('vite')));
+await build({
+  root: here, configFile: false, base: './', logLevel: 'warn',
+  resolve: {alias: [
+    {find: /^gicodec\/three$/, replacement: join(npm, 'three.js')},
+    {find: /^three\/addons\//, replacement: `${join(three, 'examples/jsm')}/`},
+    {find: /^three$/, replacement: join(three, 'build/three.module.js')},
+    {find: /^three\/(webgpu|tsl)$/, replacement: `${join(three, 'build')}/three.$1.js`},
+  ]},
+  build: {outDir: out, emptyOutDir: true, modulePreload: {polyfill: false}, assetsInlineLimit: 0, chunkSizeWarningLimit: 4000},
+});
+
+// What a page without a server and without WebGPU has no use for.
+const LEFT_OUT = /(^three\/(webgpu|tsl)$|lighting\/LightProbeGrid\.js$|\/(client|three_nodes|encoder)\.js$)/;
+const {build: bundle} = installed('esbuild');
+const {outputFiles: [{text: script}]} = await bundle({
+  entryPoints: [join(here, 'src/main.js')], bundle: true, minify: true, write: false, format: 'iife', target: 'es2022',
+  charset: 'utf8', legalComments: 'none', logLevel: 'error', plugins: [{name: 'page', setup({onResolve, onLoad}) {
+    onResolve({filter: LEFT_OUT}, ({path}) => ({path, namespace: 'none'}));
+    onLoad({filter: /./, namespace: 'none'}, () => ({contents: 'export {};', loader: 'js'}));
+    onResolve({filter: /^gicodec\/three$/}, () => ({path: join(npm, 'three.js')}));
+    onResolve({filter: /^three$/}, () => ({path: join(three, 'build/three.module.js')}));
+    onResolve({filter: /^three\/addons\//}, ({path}) => ({path: join(three, 'examples/jsm', path.slice('three/addons/'.length))}));
+  }}],
+});
+if (script.includes('</script') || script.includes('<!--')) throw new Error('the script ends the page that it stands in');
+const style = readFileSync(join(here, 'style.css'), 'utf8');
+const hash = (text) => `'sha256-${createHash('sha256').update(text).digest('base64')}'`;
+const policy = `default-src 'none'; script-src ${hash(script)} 'wasm-unsafe-eval'; worker-src blob:; style-src ${hash(style)}; ` +
+               "img-src blob: data:; connect-src 'none'; base-uri 'none'; form-action 'none'";
+/** Replaces a part that is there once. */
+const replaced = (text, from, to) => {
+  if (text.split(from).length !== 2) throw new Error(`index.html has not one ${from}`);
+  return text.replace(from, () => to);
+};
+let page = readFileSync(join(here, 'index.html'), 'utf8');
+page = page.replace(/(http-equiv="Content-Security-Policy" content=")[^"]*/, (_, before) => before + policy);
+page = replaced(page, '<link rel="stylesheet" href="./style.css">', `<style>${style}</style>`);
+page = replaced(page, '<script type="module" src="./src/main.js"></script>\n', '');
+page = replaced(page, '<button id="connect">Connect…</button>', '<button id="connect" hidden></button>');
+page = replaced(page, '</body>', `<!-- files -->\n<script>${script}</script>\n</body>`);
+mkdirSync(out, {recursive: true});
+writeFileSync(join(out, 'viewer.html'), page);
