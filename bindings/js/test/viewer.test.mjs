@@ -61,7 +61,8 @@ async function lit(page) {
   const {width, height} = page.viewport();
   const png = await page.screenshot({clip: {x: 20, y: 60, width: width - 300, height: height - 160}, encoding: 'base64'});
   return page.evaluate(async (data) => {
-    const image = await createImageBitmap(await (await fetch(`data:image/png;base64,${data}`)).blob());
+    const bytes = Uint8Array.from(atob(data), (letter) => letter.charCodeAt(0));
+    const image = await createImageBitmap(new Blob([bytes], {type: 'image/png'}));
     const canvas = new OffscreenCanvas(image.width, image.height), context = canvas.getContext('2d');
     context.drawImage(image, 0, 0);
     const {data: pixels} = context.getImageData(0, 0, image.width, image.height);
