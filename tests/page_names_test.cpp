@@ -36,6 +36,9 @@ const NameSet kOthers = {
     "include/gicodec/NAME.h",
     "src/kinds/NAME.cpp",
     "simd/vector_SET.inl",
+    // Functions of three.js.
+    "setRequestHeader",
+    "setWithCredentials",
     // Functions of programs and tests.
     "any_isa",
     "codings",
@@ -81,7 +84,7 @@ class Tree {
  public:
   Tree() {
     for (const char* room : {"include", "src", "tools", "tests", "bench", "fuzz", "examples",
-                             "script", "packaging", "cmake", "testdata", "docs"}) {
+                             "script", "packaging", "cmake", "testdata", "docs", "bindings"}) {
       for (const auto& entry : fs::recursive_directory_iterator(root_ / room)) add(entry.path());
     }
     for (const auto& entry : fs::directory_iterator(root_)) {
@@ -121,7 +124,7 @@ class Tree {
     const std::string extension = path.extension().string();
     const bool code = extension == ".h" || extension == ".cpp" || extension == ".inl" ||
                       extension == ".glsl" || extension == ".hlsl" || extension == ".cmake" ||
-                      path.filename() == "CMakeLists.txt";
+                      extension == ".js" || path.filename() == "CMakeLists.txt";
     const bool script = extension.empty() || extension == ".sh" || extension == ".py";
     // Names of this test itself prove nothing.
     if (path == fs::path(__FILE__) || path.filename() == "page_names_test.cpp") return;
@@ -131,7 +134,8 @@ class Tree {
     // Functions of programs and tests have any names; pages speak of the library's.
     const std::string room = (*fs::relative(path, root_).begin()).string();
     note_words(source, room == "include" || room == "src" || room == "examples" ||
-                           extension == ".cmake" || path.filename() == "CMakeLists.txt");
+                           room == "bindings" || extension == ".cmake" ||
+                           path.filename() == "CMakeLists.txt");
     if (extension == ".cpp" || extension == ".h") note_flags(source.text, false);
     sources_.push_back(std::move(source));
   }
