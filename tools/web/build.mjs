@@ -18,15 +18,19 @@ const [npm, tools, out] = [values.npm, values.tools, values.out].map((path) => r
 const installed = createRequire(join(tools, 'package.json'));
 const three = join(tools, 'node_modules/three');
 
+/** The file of a package that the page imports; undefined: it is no package. */
+function fileOf(name) {
+  if (name === 'gicodec/three') return join(npm, 'three.js');
+  if (name === 'three') return join(three, 'build/three.module.js');
+  if (name.startsWith('three/addons/')) return join(three, 'examples/jsm', name.slice('three/addons/'.length));
+  const [, build] = /^three\/(webgpu|tsl)$/.exec(name) ?? [];
+  return build && join(three, `build/three.${build}.js`);
+}
+
 const {build} = await import(pathToFileURL(installed.resolve('vite')));
 await build({
   root: here, configFile: false, base: './', logLevel: 'warn',
-  resolve: {alias: [
-    {find: /^gicodec\/three$/, replacement: join(npm, 'three.js')},
-    {find: /^three\/addons\//, replacement: `${join(three, 'examples/jsm')}/`},
-    {find: /^three$/, replacement: join(three, 'build/three.module.js')},
-    {find: /^three\/(webgpu|tsl)$/, replacement: `${join(three, 'build')}/three.$1.js`},
-  ]},
+  plugins: [{name: 'packages', enforce: 'pre', resolveId: fileOf}],
   build: {outDir: out, emptyOutDir: true, modulePreload: {polyfill: false}, assetsInlineLimit: 0, chunkSizeWarningLimit: 4000},
 });
 
@@ -38,9 +42,7 @@ const {outputFiles: [{text: script}]} = await bundle({
   charset: 'utf8', legalComments: 'none', logLevel: 'error', plugins: [{name: 'page', setup({onResolve, onLoad}) {
     onResolve({filter: LEFT_OUT}, ({path}) => ({path, namespace: 'none'}));
     onLoad({filter: /./, namespace: 'none'}, () => ({contents: 'export {};', loader: 'js'}));
-    onResolve({filter: /^gicodec\/three$/}, () => ({path: join(npm, 'three.js')}));
-    onResolve({filter: /^three$/}, () => ({path: join(three, 'build/three.module.js')}));
-    onResolve({filter: /^three\/addons\//}, ({path}) => ({path: join(three, 'examples/jsm', path.slice('three/addons/'.length))}));
+    onResolve({filter: /^(gicodec|three)(\/|$)/}, ({path}) => ({path: fileOf(path)}));
   }}],
 });
 if (script.includes('</script') || script.includes('<!--')) throw new Error('the script ends the page that it stands in');

@@ -2,6 +2,8 @@
 import * as THREE from 'three';
 import {GIClient} from 'gicodec/three';
 
+import {readWords} from './gpu_texels.js';
+
 const parameters = new URLSearchParams(location.search);
 const webgpu = parameters.has('webgpu');
 let renderer, scene, camera, live = null, seen = [], events = [];
@@ -21,32 +23,6 @@ async function begin() {
 const hex = (buffer) => Array.from(new Uint8Array(buffer, 0, 8), (byte) => byte.toString(16).padStart(2, '0')).join('');
 const digest = async (array) => hex(await crypto.subtle.digest('SHA-256', array));
 
-/** The 32-bit texels of an array texture of one slice, from the GPU. */
-async function onGpu(texture) {
-  const {width, height} = texture.image;
-  const words = new Uint32Array(width * height);
-  if (webgpu) {
-    const {device} = renderer.backend, pitch = Math.ceil(width / 64) * 64;
-    const buffer = device.createBuffer({size: 4 * pitch * height, usage: GPUBufferUsage.COPY_DST | GPUBufferUsage.MAP_READ});
-    const commands = device.createCommandEncoder();
-    commands.copyTextureToBuffer({texture: renderer.backend.get(texture).texture}, {buffer, bytesPerRow: 4 * pitch}, [width, height, 1]);
-    device.queue.submit([commands.finish()]);
-    await buffer.mapAsync(GPUMapMode.READ);
-    const rows = new Uint32Array(buffer.getMappedRange());
-    for (let y = 0; y < height; ++y) words.set(rows.subarray(y * pitch, y * pitch + width), y * width);
-    buffer.destroy();
-    return words;
-  }
-  const gl = renderer.getContext(), framebuffer = gl.createFramebuffer();
-  gl.bindFramebuffer(gl.READ_FRAMEBUFFER, framebuffer);
-  gl.framebufferTextureLayer(gl.READ_FRAMEBUFFER, gl.COLOR_ATTACHMENT0, renderer.properties.get(texture).__webglTexture, 0, 0);
-  const texels = new Uint32Array(4 * width * height);
-  gl.readPixels(0, 0, width, height, gl.RGBA_INTEGER, gl.UNSIGNED_INT, texels);
-  gl.deleteFramebuffer(framebuffer);
-  renderer.resetState();
-  return words.map((_, i) => texels[4 * i]);
-}
-
 window.page = {
   start(url, options) {
     seen = [];
@@ -61,7 +37,7 @@ window.page = {
       live.setView(camera);
       renderer.render(scene, camera);
       const {color, vis} = live.texels();
-      const [held, shown] = [[color, vis].map((one) => one.slice()), onGpu(live.object.children[0].textures.color)];
+      const [held, shown] = [[color, vis].map((one) => one.slice()), readWords(renderer, live.object.children[0].textures.color)];
       turn = turn.then(async () => seen.push({
         time: state.time, blocks, uploadedBytes, color: await digest(held[0]), vis: await digest(held[1]), gpu: await digest(await shown)}));
     });

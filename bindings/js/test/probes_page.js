@@ -4,6 +4,8 @@ import {EXRLoader} from 'three/addons/loaders/EXRLoader.js';
 import {GLTFLoader} from 'three/addons/loaders/GLTFLoader.js';
 import {GILoader, ProbeVolumeHelper} from 'gicodec/three';
 
+import {readWords} from './gpu_texels.js';
+
 const webgpu = new URLSearchParams(location.search).has('webgpu');
 let renderer;
 
@@ -34,41 +36,6 @@ async function draw(scene, camera, width, height) {
   renderer.setRenderTarget(null);
   drawn.dispose();
   return pixels;
-}
-
-/** The texels of an array texture of 32 bits each, from the GPU. */
-async function readTexels(texture) {
-  const {width, height, depth} = texture.image;
-  const words = new Uint32Array(width * height * depth);
-  if (webgpu) {
-    const {device} = renderer.backend, pitch = Math.ceil(width / 64) * 64;
-    const buffer = device.createBuffer({size: 4 * pitch * height * depth, usage: GPUBufferUsage.COPY_DST | GPUBufferUsage.MAP_READ});
-    const commands = device.createCommandEncoder();
-    commands.copyTextureToBuffer({texture: renderer.backend.get(texture).texture},
-                                 {buffer, bytesPerRow: 4 * pitch, rowsPerImage: height}, [width, height, depth]);
-    device.queue.submit([commands.finish()]);
-    await buffer.mapAsync(GPUMapMode.READ);
-    const rows = new Uint32Array(buffer.getMappedRange());
-    for (let y = 0; y < height * depth; ++y) words.set(rows.subarray(y * pitch, y * pitch + width), y * width);
-    buffer.destroy();
-    return words;
-  }
-  const gl = renderer.getContext(), framebuffer = gl.createFramebuffer();
-  const integer = texture.format === THREE.RedIntegerFormat;
-  const row = integer ? new Uint32Array(4 * width * height) : new Float32Array(4 * width * height);
-  gl.bindFramebuffer(gl.READ_FRAMEBUFFER, framebuffer);
-  for (let slice = 0; slice < depth; ++slice) {
-    const handle = renderer.properties.get(texture).__webglTexture;
-    gl.framebufferTextureLayer(gl.READ_FRAMEBUFFER, gl.COLOR_ATTACHMENT0, handle, 0, slice);
-    gl.readPixels(0, 0, width, height, integer ? gl.RGBA_INTEGER : gl.RGBA, integer ? gl.UNSIGNED_INT : gl.FLOAT, row);
-    for (let i = 0; i < width * height; ++i) {  // halves come as floats, exactly
-      words[slice * width * height + i] = integer ? row[4 * i]
-        : THREE.DataUtils.toHalfFloat(row[4 * i]) | THREE.DataUtils.toHalfFloat(row[4 * i + 1]) << 16;
-    }
-  }
-  gl.deleteFramebuffer(framebuffer);
-  renderer.resetState();
-  return words;
 }
 
 const base64 = (array) => {
@@ -111,7 +78,7 @@ window.page = {
     scene.add(probes);
     const lit = await draw(scene, camera, width, height);
 
-    const texels = await Promise.all(Object.values(probes.textures).map(readTexels));
+    const texels = await Promise.all(Object.values(probes.textures).map((texture) => readWords(renderer, texture)));
     const helper = new ProbeVolumeHelper(probes);
     probes.add(helper);
     const helped = await draw(scene, camera, width, height);
