@@ -34,6 +34,8 @@ coding() {
   run preview n.gic --frame 1 -o a.png
   run compare traced/color.0001.exr out/color.0001.exr
   run crop --origin 1,1,1 --size 6x3x6 -o small traced
+  echo '<!-- files -->' >page.html
+  run view n.gic --page page.html --export n.html
   run backends
   if [ -n "$hevc" ]; then
     run encode -o h.gic --threads 4 --backend hevc --preset ultrafast small
