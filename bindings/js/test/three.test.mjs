@@ -144,6 +144,26 @@ for (const [name, type] of [['webgl', 'Float32Array'], ['webgpu', 'Uint16Array']
   });
 }
 
+test('what a file says of its place that cannot be is as if it said nothing', async () => {
+  const {Writer, volumeOfLayout} = await import('gicodec/encoder');
+  const volume = await volumeOfLayout('three', [2, 1, 1]);
+  const page = await browser.newPage();
+  await page.goto(`${server.origin}/webgl.html`);
+  await page.waitForFunction('window.ready', {timeout: 60000});
+  for (const [bounds, unit, wanted] of [
+    ['0 0 0 0 1 1', '1', [-1, -0.5, -0.5, 1, 0.5, 0.5]], ['a b', '-1', [-1, -0.5, -0.5, 1, 0.5, 0.5]],
+    ['0 0 0 1 1 1e999', '1', [-1, -0.5, -0.5, 1, 0.5, 0.5]], ['0 0 0 200 100 100', '0.01', [0, 0, 0, 2, 1, 1]],
+    ['0 0 0 2 1 1', 'x', [0, 0, 0, 2, 1, 1]]]) {
+    const metadata = {'gicodec:layout': 'three', 'gicodec:bounds': bounds, 'gicodec:unit': unit};
+    const writer = await Writer.create({room: {...volume, metadata}});
+    writer.add(0, {grid: new Uint16Array(2 * 7 * 3 * 4)});
+    server.put('/place.gic', writer.finish());
+    const {box} = await page.evaluate(() => window.page.follow('/place.gic', []));
+    assert.deepEqual(box, wanted, `${bounds}, ${unit}`);
+  }
+  await page.close();
+});
+
 test('of a file with many states only what is shown is loaded, here from nginx', async (t) => {
   const {Writer, volumeOfLayout} = await import('gicodec/encoder');
   const grid = [32, 16, 16];

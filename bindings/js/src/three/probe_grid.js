@@ -1,12 +1,12 @@
 // Containers of three.js's own layout (engines.h, three_volume) as LightProbeGrid.
 import {Data3DTexture, DataUtils, FloatType, HalfFloatType, LinearFilter, RGBAFormat} from 'three';
 
+import {AXES, unitOf} from './axes.js';
 import {uploadAll} from './partial_upload.js';
 import {addStates} from './states.js';
 
 /** Textures of a grid's atlas along z, and slices of each in front and behind, which repeat the nearest one. */
 export const PARTS = 7, PADDING = 1;
-const AXES = 'right up back';
 
 /** Probes along each axis, of a texture's size. */
 function resolutionOf({name, width, height, slices}) {
@@ -20,8 +20,8 @@ function resolutionOf({name, width, height, slices}) {
 /** Least corner and size of the box that a volume lights, in metres. */
 function boxOf(metadata, resolution) {
   const bounds = (metadata['gicodec:bounds'] ?? '').split(' ').map(Number);
-  const unit = Number(metadata['gicodec:unit'] ?? 1) || 1;
-  if (bounds.length !== 6 || !bounds.every(Number.isFinite)) {
+  const unit = unitOf(metadata);
+  if (bounds.length !== 6 || !bounds.every(Number.isFinite) || ![0, 1, 2].every((axis) => bounds[axis] < bounds[axis + 3])) {
     console.warn('GILoader: the container does not say which box its grid lights: a metre for each probe is ' +
                  'taken. gicodec encode --bounds says it.');
     return {least: resolution.map((side) => -side / 2), size: resolution};

@@ -3,6 +3,7 @@ import {
   Box3, DataArrayTexture, Light, LinearFilter, Matrix3, Matrix4, NearestFilter, RedFormat, UnsignedByteType, Vector3,
 } from 'three';
 
+import {turnOf} from './axes.js';
 import {uploadAll, uploadBlocks} from './partial_upload.js';
 import {patchMaterial} from './probe_shader.js';
 import {addStates} from './states.js';
@@ -13,7 +14,6 @@ const COLORS = ['A2R10G10B10_UNORM_PACK32', 'A2B10G10R10_UNORM_PACK32', 'R8G8B8A
                 'R32G32B32A32_SFLOAT', 'B10G11R11_UFLOAT_PACK32', 'E5B9G9R9_UFLOAT_PACK32'];
 const VISIBILITIES = ['R16G16_SFLOAT', 'R32G32_SFLOAT'];
 const LIT = ['isMeshStandardMaterial', 'isMeshLambertMaterial', 'isMeshPhongMaterial', 'isMeshToonMaterial'];
-const DIRECTIONS = {right: [1, 0, 0], left: [-1, 0, 0], up: [0, 1, 0], down: [0, -1, 0], back: [0, 0, 1], forward: [0, 0, -1]};
 let count = 0;
 
 /** The places of a volume's irradiance and visibility among a container's textures; null: it has none. */
@@ -26,17 +26,6 @@ export function probeTextures({kind, firstTexture, textures: number}, textures) 
   };
   const [color, visibility] = [find(COLORS), find(VISIBILITIES)];
   return color === null || visibility === null ? null : {color, visibility};
-}
-
-/** From a volume's axes and units to three.js's. */
-function turnOf(metadata) {
-  const words = (metadata['gicodec:axes'] ?? 'right up back').split(' ');
-  const axes = words.map((word) => DIRECTIONS[word]);
-  const unit = Number(metadata['gicodec:unit'] ?? 1) || 1;
-  const whole = axes.length === 3 && axes.every(Boolean) && [0, 1, 2].every((at) => axes.some((axis) => axis[at] !== 0));
-  const [x, y, z] = (whole ? axes : ['right', 'up', 'back'].map((word) => DIRECTIONS[word]))
-      .map((axis) => new Vector3(...axis).multiplyScalar(unit));
-  return new Matrix4().makeBasis(x, y, z);
 }
 
 /** Whether colour is radiance rather than its fifth root. */

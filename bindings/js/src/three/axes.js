@@ -1,0 +1,19 @@
+// From the axes and units of a volume to three.js's (FORMAT.md, "Keys").
+import {Matrix4, Vector3} from 'three';
+
+export const AXES = 'right up back';  // of three.js
+const DIRECTIONS = {right: [1, 0, 0], left: [-1, 0, 0], up: [0, 1, 0], down: [0, -1, 0], back: [0, 0, 1], forward: [0, 0, -1]};
+
+/** Metres of a unit; 1 where a file does not say it, or says what cannot be. */
+export function unitOf(metadata) {
+  const unit = Number(metadata['gicodec:unit']);
+  return Number.isFinite(unit) && unit > 0 ? unit : 1;
+}
+
+export function turnOf(metadata) {
+  const axes = (metadata['gicodec:axes'] ?? AXES).split(' ').map((word) => (Object.hasOwn(DIRECTIONS, word) ? DIRECTIONS[word] : null));
+  const whole = axes.length === 3 && axes.every(Boolean) && [0, 1, 2].every((at) => axes.some((axis) => axis[at] !== 0));
+  const [x, y, z] = (whole ? axes : AXES.split(' ').map((word) => DIRECTIONS[word]))
+      .map((axis) => new Vector3(...axis).multiplyScalar(unitOf(metadata)));
+  return new Matrix4().makeBasis(x, y, z);
+}
