@@ -179,6 +179,8 @@ TEST(WebPage, TellsNobodyWhatIsNotForThem) {
   EXPECT_EQ(status({true, "/metrics", "", true}, "secret"), "404");
   EXPECT_EQ(status({true, "/metrics", "Bearer secret", false}, "secret"), "200");
   EXPECT_EQ(status({true, "/metrics", "secret", false}, "secret"), "404");
+  EXPECT_EQ(status({true, "/metrics", "", true, "127.0.0.1:8080"}, ""), "200");
+  EXPECT_EQ(status({true, "/metrics", "", true, "evil.org:8080"}, ""), "404");
 }
 
 TEST(WebPage, FilesAreThoseOfTheFolder) {
@@ -218,18 +220,22 @@ TEST(WebPage, FilesAreThoseOfTheFolder) {
 /// Any page can ask a browser to connect to this machine's servers.
 TEST(WebPage, OriginsAreChecked) {
   const std::vector<std::string> none, one{"https://example.org"}, all{"*"};
-  EXPECT_TRUE(may_connect("", "127.0.0.1:80", none));  // no browser
-  EXPECT_TRUE(may_connect("http://127.0.0.1:8080", "127.0.0.1:8080", none));
-  EXPECT_TRUE(may_connect("https://h:8443", "h:8443", none));
+  EXPECT_TRUE(may_connect("", "127.0.0.1:80", none, false));  // no browser
+  EXPECT_TRUE(may_connect("http://127.0.0.1:8080", "127.0.0.1:8080", none, false));
+  EXPECT_TRUE(may_connect("https://h:8443", "h:8443", none, true));
+  // A stranger's name that stands for this machine.
+  EXPECT_FALSE(may_connect("http://evil.org:8080", "evil.org:8080", none, false));
+  EXPECT_TRUE(may_connect("http://localhost:8080", "localhost:8080", none, false));
+  EXPECT_TRUE(may_connect("http://[::1]:8080", "[::1]:8080", none, false));
   for (const char* origin :
        {"http://127.0.0.1:8081", "http://127.0.0.1", "null", "https://", "ftp://127.0.0.1:8080",
         "http://127.0.0.1:8080.evil.org", "https://example.org"}) {
-    EXPECT_FALSE(may_connect(origin, "127.0.0.1:8080", none)) << origin;
+    EXPECT_FALSE(may_connect(origin, "127.0.0.1:8080", none, false)) << origin;
   }
-  EXPECT_TRUE(may_connect("https://example.org", "h", one));
-  EXPECT_FALSE(may_connect("https://example.org:1", "h", one));
-  EXPECT_FALSE(may_connect("http://example.org", "h", one));
-  EXPECT_TRUE(may_connect("null", "h", all));
+  EXPECT_TRUE(may_connect("https://example.org", "h", one, false));
+  EXPECT_FALSE(may_connect("https://example.org:1", "h", one, false));
+  EXPECT_FALSE(may_connect("http://example.org", "h", one, false));
+  EXPECT_TRUE(may_connect("null", "h", all, false));
 }
 
 }  // namespace

@@ -38,7 +38,9 @@ std::filesystem::path program() {
 
 std::string installed_folder(const std::string& name) {
   std::error_code failed;
-  const auto folder = program().parent_path().parent_path() / "share/gicodec" / name;
+  const auto path = program();
+  if (path.empty()) return "";
+  const auto folder = path.parent_path().parent_path() / "share/gicodec" / name;
   return std::filesystem::is_directory(folder, failed) ? folder.string() : "";
 }
 

@@ -194,9 +194,9 @@ int WebLoop::Loop::answer(WebLink* link, lws* wsi) {
     const std::lock_guard lock(state.mutex);
     what = state.shown;
   }
-  const WebRequest request{lws_hdr_total_length(wsi, WSI_TOKEN_GET_URI) > 0,
-                           header(wsi, WSI_TOKEN_GET_URI),
-                           header(wsi, WSI_TOKEN_HTTP_AUTHORIZATION), link->peer.loopback};
+  const WebRequest request{
+      lws_hdr_total_length(wsi, WSI_TOKEN_GET_URI) > 0, header(wsi, WSI_TOKEN_GET_URI),
+      header(wsi, WSI_TOKEN_HTTP_AUTHORIZATION), link->peer.loopback, header(wsi, WSI_TOKEN_HOST)};
   link->page = web_answer(request, what, state.listen.metrics_token, now(), state.files);
   link->answering = true;
   lws_callback_on_writable(wsi);
@@ -223,7 +223,8 @@ int WebLoop::Loop::write_page(WebLink* link, lws* wsi) {
 
 int WebLoop::Loop::admit(lws* wsi) {
   std::string origin = header(wsi, WSI_TOKEN_ORIGIN);
-  if (may_connect(origin, header(wsi, WSI_TOKEN_HOST), state.listen.origins)) return 0;
+  const bool secure = state.listen.address.via == Via::web;
+  if (may_connect(origin, header(wsi, WSI_TOKEN_HOST), state.listen.origins, secure)) return 0;
   const std::lock_guard lock(state.mutex);
   ++state.turned_away.origins;
   state.turned_away.last_origin = std::move(origin);

@@ -61,8 +61,17 @@ WebAnswer page(const char* status, const char* type, const std::string& body) {
   return {head_of(status, type, body.size()) + body, {}};
 }
 
+/// "localhost" or an address, with a port or without.
+bool is_plain_host(std::string_view host) noexcept {
+  if (host.starts_with('[')) return true;
+  const std::string_view name = host.substr(0, host.find(':'));
+  return name == "localhost" ||
+         (!name.empty() && name.find_first_not_of("0123456789.") == name.npos);
+}
+
 bool may_measure(const WebRequest& request, const std::string& token) {
-  return token.empty() ? request.loopback : same_secret(request.authorization, kBearer + token);
+  return token.empty() ? request.loopback && (request.host.empty() || is_plain_host(request.host))
+                       : same_secret(request.authorization, kBearer + token);
 }
 
 }  // namespace
@@ -114,10 +123,11 @@ WebAnswer web_answer(const WebRequest& request, const Shown& shown,
 }
 
 bool may_connect(std::string_view origin, std::string_view host,
-                 const std::vector<std::string>& allowed) noexcept {
+                 const std::vector<std::string>& allowed, bool secure) noexcept {
   if (origin.empty()) return true;
   for (const std::string_view scheme : {"https://", "http://"}) {
-    if (origin.starts_with(scheme) && origin.substr(scheme.size()) == host) return true;
+    const bool own = origin.starts_with(scheme) && origin.substr(scheme.size()) == host;
+    if (own && (secure || is_plain_host(host))) return true;
   }
   return std::ranges::any_of(allowed,
                              [&](const std::string& one) { return one == "*" || one == origin; });

@@ -13,6 +13,7 @@ struct WebRequest {
   bool get = false;  ///< its method is GET
   std::string path, authorization;
   bool loopback = false;  ///< it comes from this machine
+  std::string host = {};  ///< by which name it was asked for
 };
 
 /// The metrics that the server has shown last, and when.
@@ -51,8 +52,10 @@ struct WebAnswer {
                                    const WebFiles& files = {});
 
 /// Whether a page of `origin` may connect to a server that it calls `host`: the server's own pages,
-/// and those of `allowed`, "*" for all. Programs that are no browsers send no origin.
+/// and those of `allowed`, "*" for all. Programs that are no browsers send no origin. `secure`: the
+/// server has a certificate. Without one, own pages are those of an address or of localhost: any
+/// other name may be a stranger's that he let stand for this machine.
 [[nodiscard]] bool may_connect(std::string_view origin, std::string_view host,
-                               const std::vector<std::string>& allowed) noexcept;
+                               const std::vector<std::string>& allowed, bool secure) noexcept;
 
 }  // namespace gicodec::streaming

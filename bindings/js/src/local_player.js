@@ -18,6 +18,7 @@ export class LocalPlayer {
   #selected = null;  // the textures that are played; null: all
   #head = [];  // the first bytes, which name the version
   #size = null;  // of a container of which put() brings what is asked for
+  #whole = false;  // all of it was asked for
   #sought = null;  // the frame that next() goes to
   #last = null;    // the frame that it went to
 
@@ -80,7 +81,20 @@ export class LocalPlayer {
     // A player that lacks bytes is open where they are of the index alone.
     if (this.#player) this.#instance.call('player_destroy', this.#player);
     this.#player = 0;
-    return this.#ranged(() => this.#open(options));
+    const container = this.#ranged(() => this.#open(options));
+    return this.#size === null || container.missing ? container : this.#indexed(container);
+  }
+
+  /** The container, unless it has no index to read parts by: then it is read whole. */
+  #indexed(container) {
+    try {
+      const frames = this.frames();
+      return frames.missing ? frames : container;
+    } catch (error) {
+      if (this.#whole) return container;
+      this.#whole = true;
+      return {missing: {offset: 0, size: Number(this.#size)}};
+    }
   }
 
   #open({limits, textures} = {}) {
@@ -153,6 +167,7 @@ export class LocalPlayer {
 
   /** Seeks the frame that next() did not reach, since the library goes on behind what failed. */
   #later(missing) {
+    if (this.#whole) return missing;
     const frames = this.frames();
     if (frames.missing) return frames;
     const wanted = this.#sought ?? frames.find((frame) => this.#last === null || frame > this.#last);
@@ -174,10 +189,11 @@ export class LocalPlayer {
   }
 
   seek(frame) {
-    this.#sought = frame;
-    return this.#ranged(() => {
+    const missing = this.#ranged(() => {
       this.#instance.check('player_seek', [this.#player, frameNumber(frame)], {what: `frame ${frame}`});
     });
+    this.#sought = frame;
+    return missing;
   }
 
   /** The frames that can be sought: those that have arrived. */

@@ -55,6 +55,9 @@ for (const name of ['webgl', 'webgpu']) {
     assert.ok(found.psnr >= 35, `${found.psnr} dB`);
     const {volumes: [{geometry}]} = await open(readFileSync(join(folder, 'villa.gic')));
     found.first.forEach((at, axis) => assert.ok(Math.abs(at - geometry.origin[axis]) < 1e-5));
+    assert.ok(found.thrice > 2 * found.lit, `${found.thrice} ${found.lit}`);
+    assert.equal(found.alone, 0);
+    assert.equal(found.left, 0);
     assert.equal(found.shown, active());
     assert.ok(found.helperDiffers > 100 && found.ageDiffers > 100, `${found.helperDiffers} ${found.ageDiffers}`);
     assert.equal(found.unhelped, 0);

@@ -79,6 +79,25 @@ window.page = {
     const lit = await draw(scene, camera, width, height);
 
     const texels = await Promise.all(Object.values(probes.textures).map((texture) => readWords(renderer, texture)));
+    // A second volume on the same materials comes and goes, the first one in front of it, too.
+    const loader = new GILoader().detectSupport(renderer);
+    const others = [await loader.loadAsync(file), await loader.loadAsync(file)];
+    loader.dispose();  // ends what loads, and nothing that was made
+    await others[1].setState(1);
+    scene.add(...others);
+    const thrice = await draw(scene, camera, width, height);
+    const parent = new THREE.Group();
+    parent.add(others[1]);
+    scene.add(parent);
+    parent.visible = false;
+    others[0].removeFromParent();
+    others[0].dispose();
+    const alone = await draw(scene, camera, width, height);
+    parent.visible = true;
+    others[1].removeFromParent();
+    others[1].dispose();
+    const left = await draw(scene, camera, width, height);
+
     const helper = new ProbeVolumeHelper(probes);
     probes.add(helper);
     const helped = await draw(scene, camera, width, height);
@@ -115,7 +134,7 @@ window.page = {
     const differing = (a, b) => a.reduce((count, value, i) => count + (value !== b[i]), 0);
     const sum = (pixels) => pixels.reduce((all, value, i) => all + (i % 4 === 3 ? 0 : value), 0);
     return {psnr: -10 * Math.log10(error / (3 * kept.length)), kept: kept.length, pixels: width * height, peak, mean, meanWanted,
-            shown, helperDiffers: differing(lit, helped), ageDiffers: differing(helped, aged), unhelped: differing(lit, unhelped),
+            thrice: sum(thrice), alone: differing(lit, alone), left: differing(lit, left), shown, helperDiffers: differing(lit, helped), ageDiffers: differing(helped, aged), unhelped: differing(lit, unhelped),
             first: probes.probePosition(0).toArray(), dark: sum(dark), lit: sum(lit), hidden: sum(hidden), after: sum(after), states,
             texels: texels.map(base64)};
   },

@@ -8,7 +8,7 @@ import {Timeline} from './timeline.js';
 
 const find = (id) => document.getElementById(id);
 const stage = new Stage(find('view'));
-const timeline = new Timeline();
+const timeline = new Timeline(() => stage.refresh(), showError);
 let live = null, graphs = null;
 
 const megabytes = (bytes) => `${(bytes * 1e-6).toFixed(bytes < 1e7 ? 2 : 1)} MB`;

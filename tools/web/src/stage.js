@@ -125,9 +125,10 @@ export class Stage {
   /** What changed is shown. */
   refresh() {
     if (this.#probes === 'none') return;
-    const known = this.#volumes().filter(({isProbeVolume}) => isProbeVolume).length;
-    if (known !== this.#helpers.length) this.probes = this.#probes;  // the server has other volumes
-    this.#helpers.forEach((helper) => helper.update());
+    const volumes = this.#volumes().filter(({isProbeVolume}) => isProbeVolume);
+    const same = volumes.length === this.#helpers.length && volumes.every((volume, i) => this.#helpers[i].parent === volume);
+    if (!same) this.probes = this.#probes;  // the server has other volumes
+    else this.#helpers.forEach((helper) => helper.update());
   }
 
   #draw() {

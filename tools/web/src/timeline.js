@@ -6,8 +6,13 @@ export class Timeline {
   #states = [];
   #playing = null;
   #slider = find('time');
+  #shown;
+  #failed;
 
-  constructor() {
+  /** `shown` is called once a state is shown, `failed` with what kept one from being shown. */
+  constructor(shown, failed) {
+    this.#shown = shown;
+    this.#failed = failed;
     this.#slider.oninput = () => this.#show(Number(this.#slider.value));
     find('play').onclick = () => this.toggle();
   }
@@ -37,15 +42,22 @@ export class Timeline {
     find('state').textContent = name && at === time ? name : `${Math.round(time * 100) / 100}${name ? ` (${name})` : ''}`;
   }
 
-  #show(time) {
+  async #show(time) {
     this.#say(time);
     const state = this.#at(time);
     const wanted = state.time === null ? state.name : time;
-    return Promise.all(this.#objects.map((object) => object.setState(wanted).catch(() => {})));
+    try {
+      await Promise.all(this.#objects.map((object) => object.setState(wanted)));
+      this.#shown();
+    } catch (error) {
+      this.stop();
+      this.#failed(error);
+    }
   }
 
   toggle() {
     if (this.#playing) return this.stop();
+    if (this.#states.length < 2) return;
     find('play').textContent = '⏸';
     const playing = (this.#playing = {});
     const times = this.#states.map(({at}) => at);

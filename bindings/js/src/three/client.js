@@ -63,6 +63,14 @@ export class GIClient extends EventDispatcher {
 
   #take({type, ...values}) {
     if (this.#ended) return;
+    try {
+      this.#follow(type, values);
+    } catch (error) {
+      this.#fail(error);
+    }
+  }
+
+  #follow(type, values) {
     switch (type) {
       case 'volumes': return this.#setVolumes(values.volumes);
       case 'update': return this.#update(values);

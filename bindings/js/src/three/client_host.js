@@ -13,6 +13,7 @@ export class ClientHost {
   #busy = false;   // it has not answered yet
   #known = '';     // the volumes that it knows
   #decodeMs = 0;
+  #closed = false;
 
   /** `post(message, transfer)` sends to the page. */
   constructor(post) {
@@ -26,7 +27,9 @@ export class ClientHost {
         case 'connect': return await this.#connect(message);
         case 'view': return this.#view(message);
         case 'drawn': return this.#drawn();
-        case 'close': return this.#connection?.close();
+        case 'close':
+          this.#closed = true;
+          return this.#connection?.close();
       }
     } catch (error) {
       this.#fail(error);
@@ -35,6 +38,7 @@ export class ClientHost {
 
   async #connect({module, url, options: {everything, timeout, ...options}}) {
     this.#client = await Client.create({create: () => Instance.create(module)}, options);
+    if (this.#closed) return;
     const receive = this.#client.receive.bind(this.#client);
     this.#client.receive = (message) => {
       const began = performance.now();
@@ -67,8 +71,8 @@ export class ClientHost {
   }
 
   #update() {
-    if (this.#busy) return;
     const {volumes, state} = this.#client;
+    if (this.#busy || !state.consistent) return;
     const known = volumes.map(({id}) => id).join();
     if (known !== this.#known) {
       this.#known = known;

@@ -41,9 +41,11 @@ export class ProbeVolumeHelper extends Group {
     this.#volume = volume;
     this.colors = colors;
     this.fade = fade;
-    const size = volume.boundingBox.getSize(new Vector3());
-    const least = Math.min(...volume.grid.map((count, axis) => size.getComponent(axis) / Math.max(1, count - 1)).filter((one) => one > 0), 1);
-    const count = volume.grid[0] * volume.grid[1] * volume.grid[2];
+    const [nx, ny, nz] = volume.grid, count = nx * ny * nz;
+    const first = volume.probePosition(0);
+    // To the neighbours along each axis that has any.
+    const least = Math.min(...[[nx, 1], [ny, nx], [nz, nx * ny]].filter(([side]) => side > 1)
+        .map(([, step]) => volume.probePosition(step).distanceTo(first)), 1);
     this.#spheres = new InstancedMesh(new SphereGeometry(radius ?? least / 8, 12, 8), new MeshBasicMaterial(), count);
     this.#spheres.instanceMatrix.setUsage(DynamicDrawUsage);
     this.#spheres.frustumCulled = false;

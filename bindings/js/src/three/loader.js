@@ -5,13 +5,13 @@ import {fetchRanges, open, useWorkers} from 'gicodec:entry/index';
 import {makeProbeGrid} from './probe_grid.js';
 import {ProbeVolume, probeTextures} from './probe_volume.js';
 import {States} from './states.js';
+import {filtersFloat} from './texture_formats.js';
 
 const THREE_LAYOUTS = ['three', 'three-float32'];
 
 /** Loads containers (.gic). */
 export class GILoader extends Loader {
   #renderer = null;
-  #filtersFloat = true;
   #workers = null;
   #ended = new AbortController();
   /** Turns textures of float to half, which loses bits. */
@@ -20,8 +20,6 @@ export class GILoader extends Loader {
   /** Says for which renderer objects are made: without it, for WebGLRenderer on a desktop. */
   detectSupport(renderer) {
     this.#renderer = renderer;
-    this.#filtersFloat = renderer.isWebGPURenderer ? renderer.hasFeature('float32-filterable')
-                                      : renderer.extensions.has('OES_texture_float_linear');
     return this;
   }
 
@@ -35,7 +33,7 @@ export class GILoader extends Loader {
   load(url, onLoad, onProgress, onError) {
     const address = this.manager.resolveURL((this.path ?? '') + url);
     this.manager.itemStart(address);
-    this.#fetch(address, onProgress ?? (() => {})).then((source) => this.#make(source)).then((object) => {
+    this.#load((signal, tell) => this.#fetch(address, signal, tell), onProgress ?? (() => {})).then((object) => {
       onLoad?.(object);
       this.manager.itemEnd(address);
     }, (error) => {
@@ -48,7 +46,7 @@ export class GILoader extends Loader {
 
   /** Makes objects of a container's bytes, or anything else that open() takes. */
   parse(source, onLoad, onError) {
-    const made = this.#make(source);
+    const made = this.#load(async () => source, () => {});
     if (onLoad || onError) made.then(onLoad, onError);
     return made;
   }
@@ -64,15 +62,28 @@ export class GILoader extends Loader {
     this.abort();
   }
 
-  async #fetch(url, onProgress) {
-    let loaded = 0;
+  /** Calls begin(signal, tell) and makes objects of what it resolves to: what ends the loader ends this, until then. */
+  async #load(begin, onProgress) {
+    const own = new AbortController(), all = this.#ended.signal;
+    const stop = () => own.abort(all.reason);
+    all.addEventListener('abort', stop, {once: true});
+    let loaded = 0, made = false;
     const tell = (bytes, total) => {
       loaded += bytes;
-      onProgress(new ProgressEvent('progress', {lengthComputable: total > 0, loaded, total}));
+      if (!made) onProgress(new ProgressEvent('progress', {lengthComputable: total > 0, loaded, total}));
     };
+    try {
+      return await this.#make(await begin(own.signal, tell), own.signal);
+    } finally {
+      made = true;
+      all.removeEventListener('abort', stop);
+    }
+  }
+
+  async #fetch(url, signal, tell) {
     const source = await fetchRanges(url, {
       headers: {...this.requestHeader}, credentials: this.withCredentials ? 'include' : 'same-origin',
-      signal: this.#ended.signal,
+      signal,
     });
     if (!(source instanceof Response)) {
       return {...source, async read(offset, size) {
@@ -90,9 +101,9 @@ export class GILoader extends Loader {
     return Object.assign(counted, {whole: source.url || url});
   }
 
-  async #make(source) {
+  async #make(source, signal) {
     await this.#workers;
-    const player = await open(source, {signal: this.#ended.signal});
+    const player = await open(source, {signal});
     try {
       if (source?.whole) await this.#all(player);
       return await this.#objects(player, source?.whole);
@@ -141,13 +152,19 @@ export class GILoader extends Loader {
       release();
     }
     if (objects.length === 1) return objects[0];
-    return new Group().add(...objects);
+    const group = new Group().add(...objects);
+    const dispose = group.dispose?.bind(group);
+    group.dispose = () => {
+      objects.forEach((object) => object.dispose());
+      dispose?.();
+    };
+    return group;
   }
 
   async #grid(states, player, volume) {
     const place = volume.firstTexture, texture = player.textures[place];
     const isHalf = texture.ArrayType === Uint16Array;
-    const half = !isHalf && (this.half || !this.#filtersFloat);
+    const half = !isHalf && (this.half || !filtersFloat(this.#renderer));
     if (half && !this.half) {
       console.info('GILoader: this device cannot filter textures of float, so they become half, which loses bits');
     }

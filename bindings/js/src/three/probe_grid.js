@@ -79,10 +79,10 @@ export async function makeProbeGrid(states, volume, texture, place, {Grid, half,
   await addStates(grid, states, (first, second, part) => {
     blend(shown.image.data, first.get(place), second.get(place), part, halves);
     uploadAll(renderer, shown);
-  }, () => {
+  }, {free() {
     shown.dispose();
     if (grid.texture === shown) grid.texture = null;
-  });
+  }});
   grid.texture = shown;
   return grid;
 }

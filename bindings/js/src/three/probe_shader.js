@@ -87,19 +87,45 @@ export const probeIrradiance = (id) => /* glsl */`
 
 const IN_FRONT = '#include <lights_pars_begin>', BEHIND = '#include <lights_fragment_begin>';
 
-/** Changes a material so that it is lit; the call that it returns changes it back. */
+/** By material: what it did before, and the volumes that light it. */
+const patched = new WeakMap();
+
+/** Lets a material be lit by a volume, too. */
 export function patchMaterial(material, id, kind, uniforms) {
-  const {onBeforeCompile, customProgramCacheKey} = material;
-  material.onBeforeCompile = function before(shader, renderer) {
-    onBeforeCompile.call(this, shader, renderer);
-    Object.assign(shader.uniforms, uniforms);
-    shader.fragmentShader = shader.fragmentShader
-        .replace(IN_FRONT, `${IN_FRONT}\n${probeFunctions(id, kind)}`)
-        .replace(BEHIND, `${BEHIND}\n${probeIrradiance(id)}`);
-  };
-  material.customProgramCacheKey = function key() {
-    return `${customProgramCacheKey.call(this)} gi${id} ${kind.words} ${kind.linear}`;
-  };
+  const entry = patched.get(material) ?? install(material);
+  entry.lights.set(id, {kind, uniforms});
   material.needsUpdate = true;
-  return () => Object.assign(material, {onBeforeCompile, customProgramCacheKey, needsUpdate: true});
+}
+
+/** Takes a volume's light off a material; without any the material is as it was. */
+export function restoreMaterial(material, id) {
+  const entry = patched.get(material);
+  if (!entry?.lights.delete(id)) return;
+  material.needsUpdate = true;
+  if (entry.lights.size > 0 || material.onBeforeCompile !== entry.hook) return;  // somebody else built on the hook
+  Object.assign(material, entry.before);
+  patched.delete(material);
+}
+
+function install(material) {
+  const lights = new Map();
+  const {onBeforeCompile, customProgramCacheKey} = material;
+  const hook = function before(shader, renderer) {
+    onBeforeCompile.call(this, shader, renderer);
+    for (const [id, {kind, uniforms}] of lights) {
+      Object.assign(shader.uniforms, uniforms);
+      shader.fragmentShader = shader.fragmentShader
+          .replace(IN_FRONT, `${IN_FRONT}\n${probeFunctions(id, kind)}`)
+          .replace(BEHIND, `${BEHIND}\n${probeIrradiance(id)}`);
+    }
+  };
+  material.onBeforeCompile = hook;
+  material.customProgramCacheKey = function key() {
+    const ours = [...lights].map(([id, {kind}]) => `gi${id} ${kind.words} ${kind.linear}`);
+    // The usual key is the text of the hook, which is ours now.
+    return `${customProgramCacheKey.call(this)} ${onBeforeCompile} ${ours.join(' ')}`;
+  };
+  const entry = {lights, hook, before: {onBeforeCompile, customProgramCacheKey}};
+  patched.set(material, entry);
+  return entry;
 }

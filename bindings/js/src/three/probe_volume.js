@@ -1,13 +1,13 @@
 // Volumes of kind probes (DDGI): irradiance and visibility by octahedral direction, as a light.
 import {
-  Box3, DataArrayTexture, Light, LinearFilter, Matrix3, Matrix4, NearestFilter, RedFormat, UnsignedByteType, Vector3,
+  Box3, DataArrayTexture, FloatType, Light, LinearFilter, Matrix3, Matrix4, NearestFilter, RedFormat, UnsignedByteType, Vector3,
 } from 'three';
 
 import {turnOf} from './axes.js';
 import {uploadAll, uploadBlocks} from './partial_upload.js';
-import {patchMaterial} from './probe_shader.js';
+import {patchMaterial, restoreMaterial} from './probe_shader.js';
 import {addStates} from './states.js';
-import {formatOf} from './texture_formats.js';
+import {filtersFloat, formatOf} from './texture_formats.js';
 import {forRows, tilingOf} from './tilings.js';
 
 const COLORS = ['A2R10G10B10_UNORM_PACK32', 'A2B10G10R10_UNORM_PACK32', 'R8G8B8A8_UNORM', 'R16G16B16A16_SFLOAT',
@@ -36,10 +36,11 @@ function isLinear(volume, texture) {
   return !texture.format.includes('UNORM');
 }
 
-function arrayTexture({width, height, slices, format}) {
+function arrayTexture({width, height, slices, format}, renderer) {
   const {format: pixels, type, words} = formatOf(format);
   const texture = Object.assign(new DataArrayTexture(null, width, height, slices), {format: pixels, type});
-  texture.minFilter = texture.magFilter = words ? NearestFilter : LinearFilter;
+  const filtered = !words && (type !== FloatType || filtersFloat(renderer));
+  texture.minFilter = texture.magFilter = filtered ? LinearFilter : NearestFilter;
   return texture;
 }
 
@@ -57,12 +58,12 @@ export class ProbeVolume extends Light {
   #turn;
   #places;
   #renderer;
-  #patched = new Map();
+  #materials = new Map();  // that it lights, and what forgets each
 
   /** @internal */
   static async make(states, volume, textures, renderer) {
     const light = new ProbeVolume(volume, textures, renderer);
-    await addStates(light, states, (frames) => light.setTexels(frames));
+    await addStates(light, states, (frames) => light.setTexels(frames), {blends: false});
     return light;
   }
 
@@ -106,12 +107,13 @@ export class ProbeVolume extends Light {
     const [ofColor, ofVisibility] = [tile(color), tile(visibility)];
     /** Of both kinds of shaders, by name. */
     this.uniforms = {
-      Color: {value: arrayTexture(color)}, Visibility: {value: arrayTexture(visibility)}, Active: {value: active},
+      Color: {value: arrayTexture(color, renderer)}, Visibility: {value: arrayTexture(visibility, renderer)}, Active: {value: active},
       FromWorld: {value: new Matrix4()}, Origin: {value: new Vector3()}, Spacing: {value: new Vector3()},
       Grid: {value: new Vector3(...grid)}, Scroll: {value: new Vector3()},
       ColorTile: {value: ofColor.tile}, ColorSize: {value: ofColor.size},
-      VisibilityTile: {value: ofVisibility.tile}, VisibilitySize: {value: ofVisibility.size}, Intensity: {value: 1},
+      VisibilityTile: {value: ofVisibility.tile}, VisibilitySize: {value: ofVisibility.size}, Intensity: {},
     };
+    Object.defineProperty(this.uniforms.Intensity, 'value', {enumerable: true, get: () => this.#shownIntensity()});
     /** From the first probe to the last, before the volume is moved. */
     this.boundingBox = new Box3();
     this.setGeometry(volume.geometry);
@@ -127,7 +129,6 @@ export class ProbeVolume extends Light {
     super.updateMatrixWorld(force);
     if (!this.uniforms) return;  // of the constructor of Light
     this.uniforms.FromWorld.value.copy(this.matrixWorld).multiply(this.#turn).invert();
-    this.uniforms.Intensity.value = this.visible ? this.intensity : 0;
     if (!this.autoLight || !this.parent) return;
     let root = this.parent;
     while (root.parent) root = root.parent;
@@ -138,11 +139,28 @@ export class ProbeVolume extends Light {
   light(object) {
     object.traverse(({material}) => {
       for (const one of Array.isArray(material) ? material : [material]) {
-        if (!one || this.#patched.has(one) || !LIT.some((kind) => one[kind])) continue;
+        if (!one || this.#materials.has(one) || !LIT.some((kind) => one[kind])) continue;
         const uniforms = Object.entries(this.uniforms).map(([name, value]) => [`gi${this.#id}${name}`, value]);
-        this.#patched.set(one, patchMaterial(one, this.#id, this.kind, Object.fromEntries(uniforms)));
+        patchMaterial(one, this.#id, this.kind, Object.fromEntries(uniforms));
+        const forget = () => this.#forget(one);
+        one.addEventListener('dispose', forget);
+        this.#materials.set(one, forget);
       }
     });
+  }
+
+  #forget(material) {
+    material.removeEventListener('dispose', this.#materials.get(material));
+    this.#materials.delete(material);
+    restoreMaterial(material, this.#id);
+  }
+
+  /** 0 unless it is in a scene, and visible with all above it. */
+  #shownIntensity() {
+    for (let one = this; ; one = one.parent) {
+      if (!one.visible) return 0;
+      if (one.parent === null) return one === this ? 0 : this.intensity;
+    }
   }
 
   /** Whether a probe holds anything, by its number, x + nx·(y + ny·z). */
@@ -208,8 +226,7 @@ export class ProbeVolume extends Light {
   }
 
   dispose() {
-    for (const restore of this.#patched.values()) restore();
-    this.#patched.clear();
+    for (const material of [...this.#materials.keys()]) this.#forget(material);
     for (const name of ['Color', 'Visibility', 'Active']) this.uniforms[name].value.dispose();
     super.dispose();
   }

@@ -1,6 +1,6 @@
 // The states of a container: frames with times and names, decoded when they are asked for.
 
-/** Frames that stay decoded: two are blended. */
+/** Frames that stay decoded for each object: two are blended. */
 const KEPT = 2;
 
 /** What metadata says of a container's frames (FORMAT.md, "Keys"), by ascending frame. */
@@ -62,12 +62,16 @@ export class States {
     let kept = this.#kept.get(frame);
     this.#kept.delete(frame);
     if (!kept) {
-      kept = this.#turn.then(() => this.#decode(frame));
-      this.#turn = kept.catch(() => this.#kept.delete(frame));
+      // What nobody waits for any more is not decoded.
+      kept = this.#turn.then(() => {
+        if (this.#kept.get(frame) !== kept) throw new Error('another state was asked for');
+        return this.#decode(frame);
+      });
+      this.#turn = kept.catch(() => { if (this.#kept.get(frame) === kept) this.#kept.delete(frame); });
     }
     this.#kept.set(frame, kept);  // behind those that were asked for earlier
     for (const old of this.#kept.keys()) {
-      if (this.#kept.size > KEPT) this.#kept.delete(old);
+      if (this.#kept.size > KEPT * Math.max(1, this.#users)) this.#kept.delete(old);
     }
     return kept;
   }
@@ -95,17 +99,21 @@ export class States {
 /**
  * Gives an object `states`, `state`, which may be set to a time or a name, setState(), which resolves once
  * it is shown, and a dispose() that calls `free`. `show(first, second, part)` takes the textures of two
- * frames. Resolves once the first state is shown.
+ * frames; without `blends` the second is the first. Resolves once the first state is shown.
  */
-export async function addStates(object, states, show, free = () => {}) {
+export async function addStates(object, states, show, {free = () => {}, blends = true} = {}) {
   const release = states.use();
   let state = null, asked = 0, ended = false;
   const go = async ({first, second, part}, wanted) => {
     const turn = ++asked;
     state = wanted;
-    const [a, b] = await Promise.all([states.frame(first), states.frame(second)]);
+    try {
+      const [a, b] = await Promise.all([states.frame(first), states.frame(blends ? second : first)]);
+      if (turn === asked) show(a, b, part);
+    } catch (error) {
+      if (turn === asked) throw error;
+    }
     if (turn !== asked) return;  // another one was asked for, or dispose() called
-    show(a, b, part);
     object.dispatchEvent({type: 'state', state: wanted});
   };
   const setState = async (wanted) => {

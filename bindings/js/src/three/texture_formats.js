@@ -21,6 +21,12 @@ const FORMATS = {
   E5B9G9R9_UFLOAT_PACK32: [RGBFormat, UnsignedInt5999Type, 'RGB', 'UNSIGNED_INT_5_9_9_9_REV', 4],
 };
 
+/** Whether a renderer filters textures of float; one that is not known counts as one of a desktop. */
+export function filtersFloat(renderer) {
+  if (!renderer) return true;
+  return renderer.isWebGPURenderer ? renderer.hasFeature('float32-filterable') : renderer.extensions.has('OES_texture_float_linear');
+}
+
 /** {format, type, glFormat, glType, bytes, words} of a format; null: there is none. */
 export function formatOf(name) {
   if (!Object.hasOwn(FORMATS, name)) return null;
