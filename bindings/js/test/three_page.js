@@ -173,6 +173,20 @@ window.page = {
     return result;
   },
 
+  /** How many states a file has, given as each kind of source. */
+  async sources(url) {
+    const blob = await (await fetch(url)).blob();
+    const given = [blob, new File([blob], 'x.gic'), fetch(url), blob.stream(), await blob.arrayBuffer()];
+    const counts = [];
+    for (const source of given) {
+      const grid = await loader().parse(source);
+      await grid.setState(grid.states.at(-1).time);
+      counts.push(grid.states.length);
+      grid.dispose();
+    }
+    return counts;
+  },
+
   async failure(url) {
     try {
       await loader().loadAsync(url);

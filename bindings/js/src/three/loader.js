@@ -7,6 +7,15 @@ import {ProbeVolume, probeTextures} from './probe_volume.js';
 import {States} from './states.js';
 import {filtersFloat} from './texture_formats.js';
 
+/** What can be read anywhere, since states are: parts of a file, and all of a stream. */
+async function seekable(source) {
+  if (source instanceof Blob) {
+    return {size: source.size, read: (offset, size) => source.slice(offset, offset + size).arrayBuffer()};
+  }
+  const stream = source instanceof Response && source.ok ? source.body : source;
+  return stream instanceof ReadableStream ? new Response(stream).arrayBuffer() : source;
+}
+
 const THREE_LAYOUTS = ['three', 'three-float32'];
 
 /** Loads containers (.gic). */
@@ -46,7 +55,7 @@ export class GILoader extends Loader {
 
   /** Makes objects of a container's bytes, or anything else that open() takes. */
   parse(source, onLoad, onError) {
-    const made = this.#load(async () => source, () => {});
+    const made = this.#load(async () => ({source: await source}), () => {});
     if (onLoad || onError) made.then(onLoad, onError);
     return made;
   }
@@ -73,7 +82,8 @@ export class GILoader extends Loader {
       if (!made) onProgress(new ProgressEvent('progress', {lengthComputable: total > 0, loaded, total}));
     };
     try {
-      return await this.#make(await begin(own.signal, tell), own.signal);
+      const {source, whole} = await begin(own.signal, tell);
+      return await this.#make(await seekable(source), whole, own.signal);
     } finally {
       made = true;
       all.removeEventListener('abort', stop);
@@ -86,36 +96,31 @@ export class GILoader extends Loader {
       signal,
     });
     if (!(source instanceof Response)) {
-      return {...source, async read(offset, size) {
+      return {source: {...source, async read(offset, size) {
         const bytes = await source.read(offset, size);
         tell(bytes.length, source.size);
         return bytes;
-      }};
+      }}};
     }
-    if (!source.ok || !source.body) return source;  // open() says what is wrong with it
+    if (!source.ok || !source.body) return {source};  // open() says what is wrong with it
     const total = Number(source.headers.get('content-length') ?? 0);
     const counted = source.body.pipeThrough(new TransformStream({transform(chunk, controller) {
       tell(chunk.length, total);
       controller.enqueue(chunk);
     }}));
-    return Object.assign(counted, {whole: source.url || url});
+    return {source: counted, whole: source.url || url};
   }
 
-  async #make(source, signal) {
+  /** `whole`: the URL of a file that came as a whole. */
+  async #make(source, whole, signal) {
     await this.#workers;
     const player = await open(source, {signal});
     try {
-      if (source?.whole) await this.#all(player);
-      return await this.#objects(player, source?.whole);
+      return await this.#objects(player, whole);
     } catch (error) {
       player.close();
       throw error;
     }
-  }
-
-  /** Plays a stream to its end, since it can be sought where it has arrived. */
-  async #all(player) {
-    while (await player.next() !== null);
   }
 
   async #objects(player, whole) {
