@@ -35,6 +35,13 @@ struct ContainerReader::State {
   /// Moves past unwanted packets that the index lists. Returns the packet at the new position, if
   /// the index lists it.
   std::optional<SeekEntry> follow_index();
+  /// The first packet that the index lists at the position or behind it.
+  [[nodiscard]] std::vector<SeekEntry>::const_iterator next_listed() const noexcept {
+    const auto& packets = index.packets();
+    return std::lower_bound(
+        packets.begin(), packets.end(), position,
+        [](const SeekEntry& packet, std::uint64_t offset) { return packet.offset < offset; });
+  }
   std::optional<std::uint64_t> next_frame();
   Status next(ContainerPacket& packet);
   Status read_next(FileEntry& entry);
@@ -98,10 +105,8 @@ std::optional<SeekEntry> ContainerReader::State::follow_index() {
   const bool all = selected.empty() && starts.empty();
   if (!seekable || all || position >= index.end()) return std::nullopt;
   const auto& packets = index.packets();
-  auto it = std::lower_bound(
-      packets.begin(), packets.end(), position,
-      [](const SeekEntry& packet, std::uint64_t offset) { return packet.offset < offset; });
-  it = std::find_if(it, packets.end(), [&](const SeekEntry& packet) { return is_wanted(packet); });
+  const auto it = std::find_if(next_listed(), packets.end(),
+                               [&](const SeekEntry& packet) { return is_wanted(packet); });
   position = it == packets.end() ? index.end() : it->offset;
   if (it == packets.end()) return std::nullopt;
   return *it;
@@ -127,11 +132,8 @@ Status ContainerReader::State::read_next(FileEntry& entry) {
 std::optional<std::uint64_t> ContainerReader::State::next_frame() {
   if (ended || !seekable) return std::nullopt;
   if (const auto listed = follow_index()) return listed->frame;
-  const auto& packets = index.packets();
-  const auto at = std::lower_bound(
-      packets.begin(), packets.end(), position,
-      [](const SeekEntry& packet, std::uint64_t offset) { return packet.offset < offset; });
-  if (at == packets.end() || at->offset != position) return std::nullopt;
+  const auto at = next_listed();
+  if (at == index.packets().end() || at->offset != position) return std::nullopt;
   return at->frame;
 }
 
