@@ -95,6 +95,8 @@ TEST_F(CliView, RefusesWhatItCannotShow) {
   write("other.html", "<html></html>");
   refuse(Exit::bad_input, Arguments{"x.gic", "--page", "other.html"} + to,
          {"other.html: is not the viewer.html"});
+  refuse(Exit::io, Arguments{"x.gic", "--page", "in"} + to, {"in: is a folder"});
+  refuse(Exit::io, Arguments{"x.gic", "--scene", "in"} + to + page, {"in: "});
   refuse(Exit::io, Arguments{"x.gic", "--scene", "absent.glb"} + to + page, {"absent.glb"});
   refuse(Exit::usage, Arguments{"x.gic", "--export", "x.gic", "--overwrite"} + page, {"x.gic"});
   write("there.html", "mine");

@@ -8,6 +8,8 @@
 #include <array>
 #include <cerrno>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <mutex>
 #include <random>
 #include <system_error>
@@ -308,6 +310,17 @@ void AtomicFile::commit() {
 void AtomicFile::fail_errno(const char* what) const {
   const int code = errno;
   fail(Exit::io, "{}: {}: {}", path_ == "-" ? "standard output" : path_, what, reason(code));
+}
+
+std::string file_contents(const std::string& path) {
+  require_exists(path);
+  std::error_code failed;
+  if (std::filesystem::is_directory(native_path(path), failed))
+    fail(Exit::io, "{}: is a folder; name a file", path);
+  std::ifstream stream(native_path(path), std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  if (!stream) fail(Exit::io, "{}: cannot be read", path);
+  return text;
 }
 
 void write_file(const std::string& path, std::span<const std::byte> bytes, Existing existing) {

@@ -113,6 +113,9 @@ void remove_temporaries() noexcept;
 /// (at most 64), so that a report replaces only reports.
 void check_report(const std::string& path, bool (*is_report)(std::string_view head));
 
+/// The bytes of a whole file. Throws Error of Exit::io.
+[[nodiscard]] std::string file_contents(const std::string& path);
+
 /// Writes a whole file by AtomicFile.
 void write_file(const std::string& path, std::span<const std::byte> bytes,
                 Existing existing = Existing::refuse);

@@ -12,8 +12,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <random>
 #include <span>
@@ -41,14 +39,6 @@ struct ViewOptions {
   std::string input, scene, page, output;
   bool overwrite = false;
 };
-
-std::string contents_of(const std::string& path) {
-  require_exists(path);
-  std::ifstream stream(native_path(path), std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  if (!stream) fail(Exit::io, "{}: cannot be read", path);
-  return text;
-}
 
 std::string escaped(std::string_view text) {
   std::string out;
@@ -94,7 +84,7 @@ std::string inside(const std::string& id, const std::string& path) {
   }
   return fmt::format(
       "<script type=\"application/octet-stream\" id=\"{}\" data-name=\"{}\">{}</script>\n", id,
-      escaped(path_text(native_path(path).filename())), base64(contents_of(path)));
+      escaped(path_text(native_path(path).filename())), base64(file_contents(path)));
 }
 
 std::string page_of(const ViewOptions& options) {
@@ -106,7 +96,7 @@ std::string page_of(const ViewOptions& options) {
          "it, and --page build/web/viewer.html names it");
   }
   if (options.page.empty()) page += "/viewer.html";
-  std::string text = contents_of(page);
+  std::string text = file_contents(page);
   const std::size_t at = text.find(kMark);
   if (at == text.npos) {
     fail(Exit::bad_input, "{}: is not the viewer.html that script/build-web makes", page);
@@ -127,7 +117,6 @@ std::string temporary_page(const std::string& input) {
 }
 
 Exit view(const ViewOptions& options, const Cli& cli) {
-  require_exists(options.input);
   InputFiles inputs({options.input});
   if (!options.scene.empty()) inputs.add(options.scene);
   if (!options.page.empty()) inputs.add(options.page);

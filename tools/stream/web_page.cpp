@@ -1,6 +1,7 @@
 #include "web_page.h"
 
 #include "dump/error.h"
+#include "dump/file.h"
 #include "dump/file_system.h"
 #include "secrets.h"
 
@@ -9,8 +10,6 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
 namespace gicodec::streaming {
 namespace {
@@ -39,14 +38,6 @@ const char* type_of(std::string_view path) {
   const auto found =
       std::ranges::find_if(kTypes, [&](const auto& row) { return path.ends_with(row.first); });
   return found == kTypes.end() ? "application/octet-stream" : found->second;
-}
-
-std::string contents_of(const std::string& path) {
-  std::ifstream stream(tools::native_path(path), std::ios::binary);
-  std::string bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  if (!stream || bytes.empty())
-    tools::fail(tools::Exit::io, "{}: cannot be read, or is empty", path);
-  return bytes;
 }
 
 std::string head_of(const char* status, std::string_view type, std::size_t bytes) {
@@ -91,7 +82,8 @@ WebFiles::WebFiles(const std::string& folder) {
       }
       const std::string path = tools::path_text(entry.path());
       std::string name = "/" + tools::path_text(entry.path().lexically_relative(top));
-      files_[std::move(name)] = {type_of(path), contents_of(path)};
+      File& file = files_[std::move(name)] = {type_of(path), tools::file_contents(path)};
+      if (file.bytes.empty()) tools::fail(tools::Exit::io, "{}: is empty", path);
     }
   } catch (const fs::filesystem_error& error) {
     tools::fail(tools::Exit::io, "{}: cannot be read: {}", folder, error.code().message());
