@@ -83,6 +83,11 @@ for (const [name, type] of [['webgl', 'Float32Array'], ['webgpu', 'Uint16Array']
       assert.equal(await call('stays', `/${name}-states.gic`, 'noon'), made.texels[1]);
     });
 
+    test('states that a file cannot hold are refused', async () => {
+      assert.match(await call('refused', [{name: 'a\n1 2 b'}]), /a name in one line/);
+      assert.match(await call('refused', [{time: '7'}]), /a finite time/);
+    });
+
     test('workers decode the same', async () => {
       const found = await call('follow', `/${name}-states.gic`, ['noon'], 1);
       assert.deepEqual(found.texels, made.texels.slice(0, 2));

@@ -126,6 +126,11 @@ window.page = {
     return {file: base64(bytes), texels: captured.map(({texels}) => base64(texels)), type: captured[0].texels.constructor.name};
   },
 
+  /** What saving says of states that a file cannot hold. */
+  async refused(states) {
+    return saveLightProbeGrid(renderer, baked, {states}).then(() => null, ({message}) => message);
+  },
+
   /** Loads a file and goes through states: the texels of each, from the GPU. */
   async follow(url, states, workers = 0) {
     const events = [];

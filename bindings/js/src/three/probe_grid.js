@@ -39,6 +39,9 @@ function makeTexture([width, height], slices, Type, type) {
   return texture;
 }
 
+/** The nearest half; 65504 for what is beyond. */
+export const toHalf = (value) => DataUtils.toHalfFloat(Math.min(65504, Math.max(-65504, value)));
+
 /** Texels between two states, or exactly the first. */
 function blend(out, first, second, part, half) {
   if (first instanceof Uint16Array) {
@@ -55,7 +58,7 @@ function blend(out, first, second, part, half) {
   }
   for (let i = 0; i < out.length; ++i) {
     const value = first[i] + (second[i] - first[i]) * part;
-    out[i] = half ? DataUtils.toHalfFloat(Math.min(65504, Math.max(-65504, value))) : value;
+    out[i] = half ? toHalf(value) : value;
   }
 }
 

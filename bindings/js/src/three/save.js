@@ -1,7 +1,6 @@
 // Baked grids as containers.
-import {DataUtils} from 'three';
-
-import {PADDING, PARTS} from './probe_grid.js';
+import {AXES} from './axes.js';
+import {PADDING, PARTS, toHalf} from './probe_grid.js';
 
 /** What a grid's texture holds now: {resolution, bounds, texels}, a Uint16Array of halves or a Float32Array. */
 export async function captureLightProbeGrid(renderer, grid) {
@@ -28,9 +27,14 @@ export async function saveLightProbeGrid(renderer, grid, {states = [], half = fa
   const layout = halves ? 'three' : 'three-float32';
   const {Writer, volumeOfLayout} = await import('gicodec:entry/encoder');
   const volume = await volumeOfLayout(layout, resolution);
+  for (const {time = 0, name: called = ''} of states) {
+    if (!Number.isFinite(time) || called.includes('\n')) {
+      throw new RangeError(`a state has a finite time and a name in one line, not ${time} and ${JSON.stringify(called)}`);
+    }
+  }
   const lines = states.map(({time = '-', name: called = ''}, frame) => `${frame} ${time} ${called}`);
   const writer = await Writer.create({[name]: {...volume, metadata: {
-    'gicodec:layout': layout, 'gicodec:axes': 'right up back', 'gicodec:unit': '1', 'gicodec:bounds': bounds.join(' '),
+    'gicodec:layout': layout, 'gicodec:axes': AXES, 'gicodec:unit': '1', 'gicodec:bounds': bounds.join(' '),
   }}}, {preset, metadata: lines.length ? {'gicodec:states': lines.join('\n')} : {}});
   all.forEach(({texels}, frame) => {
     const turned = halves && Type !== Uint16Array ? Uint16Array.from(texels, toHalf) : texels;
@@ -38,8 +42,6 @@ export async function saveLightProbeGrid(renderer, grid, {states = [], half = fa
   });
   return writer.finish();
 }
-
-const toHalf = (value) => DataUtils.toHalfFloat(Math.min(65504, Math.max(-65504, value)));
 
 /** The texels of a 3D texture: those that it was made of, or what the GPU has. */
 async function texelsOf(renderer, texture, [width, height, depth]) {
