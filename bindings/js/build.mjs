@@ -19,7 +19,7 @@ const {values} = parseArgs({options: {
 }});
 const [out, folder] = [resolve(values.out), resolve(values.modules)];
 const ENTRIES = {index: 'index', encoder: 'encoder_entry', client: 'client_entry', three: 'three/index',
-                 three_nodes: 'three/probe_nodes'};  // and their sources
+                 three_nodes: 'three/volume_nodes'};  // and their sources
 const BUILDS = values.quick ? [
   {name: 'quick', modules: ['decoder', 'client', 'encoder'], options: ['-DGICODEC_CLIENT=ON', '-DCMAKE_UNITY_BUILD=ON']},
 ] : [  // what is built at once

@@ -195,7 +195,9 @@ void fill_cubes(EngineTexture& texture, Grid voxels, const ProbeSamples& samples
   for_places(voxels, [&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
     const auto& cube = samples.at(x, y, z).light.cube;
     for (std::uint32_t face = 0; face < cube.size(); ++face) {
-      std::byte* texel = texel_at(texture, x, y + face % 2 * voxels.y, z + face / 2 * voxels.z);
+      // Bevy's shaders take faces towards -x, -y and -z from y = Ry on.
+      std::byte* texel =
+          texel_at(texture, x, y + (1 - face % 2) * voxels.y, z + face / 2 * voxels.z);
       store_texel(texture.desc.record, texel, {cube[face].x, cube[face].y, cube[face].z, 0});
     }
   });
@@ -239,6 +241,21 @@ Grid layout_grid(const EngineLayout& layout, Grid probes) {
   if (const std::uint32_t cells = cells_of(layout)) return bricks_of(probes, cells);
   // A layer of a lightmap is a horizontal plane.
   return layout.unit == GridUnit::texel ? Grid{probes.x, probes.z, probes.y} : probes;
+}
+
+std::optional<std::array<double, 6>> lit_box(const EngineLayout& layout, const VolumeShape& shape) {
+  if (layout.unit == GridUnit::texel || is_octahedral(*layout.make({1, 1, 1}))) return std::nullopt;
+  // Probes and voxels stand in the middle of their cells, bricks end at probes.
+  const double margin = cells_of(layout) == 0 ? 0.5 : 0.0;
+  const std::array<std::uint32_t, 3> sides{shape.grid.x, shape.grid.y, shape.grid.z};
+  const std::array<double, 3> origin{shape.origin.x, shape.origin.y, shape.origin.z};
+  const std::array<double, 3> spacing{shape.spacing.x, shape.spacing.y, shape.spacing.z};
+  std::array<double, 6> box{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    box[axis] = origin[axis] - margin * spacing[axis];
+    box[axis + 3] = origin[axis] + (sides[axis] - 1 + margin) * spacing[axis];
+  }
+  return box;
 }
 
 Grid probes_of(const EngineLayout& layout, Grid wanted) {

@@ -5,6 +5,8 @@
 
 #include <gicodec/engines.h>
 
+#include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,6 +18,10 @@ namespace gicodec::ddgi {
 [[nodiscard]] Grid probes_of(const EngineLayout& layout, Grid wanted);
 /// What the layout counts in a volume of that many probes: its --grid.
 [[nodiscard]] Grid layout_grid(const EngineLayout& layout, Grid probes);
+/// The box that a volume lights, least corner first; nullopt for light maps, and for layouts whose
+/// geometry says it.
+[[nodiscard]] std::optional<std::array<double, 6>> lit_box(const EngineLayout& layout,
+                                                           const VolumeShape& shape);
 /// What the tracer's own textures have to be. `encoding`: of colour, where it is octahedral.
 [[nodiscard]] TextureForms forms_of(const EngineLayout& layout);
 

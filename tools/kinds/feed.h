@@ -27,6 +27,9 @@ struct FeedVolume {
   std::vector<int> quantisers = {};
   /// By texture, the attributes of dumps besides scene and time; or empty.
   std::vector<tools::DumpInfo> files = {};
+  std::string layout = {};  ///< EngineLayout::name, or empty
+  std::optional<std::array<double, 6>> bounds =
+      {};  ///< that it lights, if its geometry does not say it
 };
 
 [[nodiscard]] inline bool is_probes(const FeedVolume& volume) {

@@ -116,6 +116,10 @@ std::vector<kinds::FeedVolume> ProbeServer::volumes() const {
   world.geometry.grid = shown.front().desc.grid;
   if (world.geometry.grid == shape.grid) world.geometry = ddgi::geometry_of(shape);
   for (const Shown& texture : shown) world.files.push_back(info_of(texture, shape));
+  if (engine_) {
+    world.layout = options_.layout->name;
+    world.bounds = ddgi::lit_box(*options_.layout, shape);
+  }
   std::vector<kinds::FeedVolume> all{std::move(world)};
   if (!fine_geometry_) return all;
   const ProbeTextures fine(fine_geometry_->grid, options_.trace.forms);

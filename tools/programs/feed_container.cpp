@@ -21,10 +21,10 @@ ContainerDescription describe(const Feed& feed, const FrameTimes& times, const s
     tools::check(add_volume(description, volume.name, volume.desc), path);
     VolumeEntry& entry = description.volumes.back();
     entry.geometry = volume.geometry;
-    tools::add_place(entry.metadata, {.layout = {},
+    tools::add_place(entry.metadata, {.layout = volume.layout,
                                       .axes = "right up back",
                                       .metres = 1.0,
-                                      .bounds = {}});  // those of glTF's scenes
+                                      .bounds = volume.bounds});  // axes of glTF's scenes
     for (std::size_t i = 0; i < volume.quantisers.size(); ++i) {
       if (volume.quantisers[i] < 0) continue;
       TextureEntry& texture = description.textures[entry.first_texture + i];

@@ -2,14 +2,15 @@
 import assert from 'node:assert/strict';
 import {createHash} from 'node:crypto';
 import {execFileSync, spawn} from 'node:child_process';
-import {existsSync, mkdtempSync, readFileSync, rmSync} from 'node:fs';
+import {existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {after, before, test} from 'node:test';
 import {setTimeout} from 'node:timers/promises';
 
 import {CHROMIUM_WITH_GPU, launch, pageOf, serve} from './browser_support.mjs';
-import {program} from './support.mjs';
+import {bytes, program, randomWords} from './support.mjs';
+import {VolumeEncoder, Writer, volumeOfLayout} from 'gicodec/encoder';
 
 const FRAMES = 24, FPS = 25;
 let browser, pages, folder, server, url;
@@ -17,10 +18,12 @@ const states = new Map();  // by colour: that of visibility
 
 const digest = (bytes) => createHash('sha256').update(bytes).digest('hex').slice(0, 16);
 
-async function start(address, ...options) {
+const start = (address, ...options) => play('room.gic', address, ...options);
+
+async function play(file, address, ...options) {
   const ports = join(folder, 'ports');
   rmSync(ports, {force: true});
-  const child = spawn(program('gi-server'), ['--play', join(folder, 'room.gic'), '--loop', '--listen-web', address,
+  const child = spawn(program('gi-server'), ['--play', join(folder, file), '--loop', '--listen-web', address,
                                              '--insecure-web', '--proofs', '--rate', `${FPS}`, '--allow-origin', '*', '--port-file', ports, ...options], {stdio: 'ignore'});
   for (const end = Date.now() + 30000; !existsSync(ports); await setTimeout(50)) {
     assert.ok(child.exitCode === null && Date.now() < end, 'gi-server does not start');
@@ -83,6 +86,45 @@ for (const [name, options, count] of [['webgl', {}, 200], ['webgpu', {}, 60], ['
     assert.ok(seen.some(({uploadedBytes}) => uploadedBytes > 0), 'no update went to the GPU in parts');
     await call(page, 'stop');
     await page.close();
+  });
+}
+
+for (const [layout, type, names] of [
+  ['three', 'LightProbeGrid', ['grid']], ['unity-apv', 'TextureVolume', ['L0_L1Rx', 'L2_0', 'Validity']],
+  ['unreal-vlm', 'TextureVolume', ['SHCoefficients0', 'DirectionalLightShadowing']]]) {
+  test(`it follows a server of layout ${layout}`, async () => {
+    const words = randomWords(5);
+    const volume = await volumeOfLayout(layout, [4, 4, 4]);
+    const writer = await Writer.create({[layout]: volume});
+    const encoder = await VolumeEncoder.create(volume);
+    const textures = Object.fromEntries(encoder.textures.map(({name, ArrayType, textureBytes}) => [name, new ArrayType(textureBytes / ArrayType.BYTES_PER_ELEMENT)]));
+    const known = new Set();
+    for (let frame = 0; frame < 8; ++frame) {  // some texels change in each, halves stay finite
+      for (const texels of Object.values(textures)) {
+        for (let i = 0; i < 4; ++i) texels[words.next().value % texels.length] = words.next().value & 0x7B7B7B7B;
+      }
+      writer.add(frame, textures);
+      known.add(names.map((name) => digest(bytes(textures[name]))).join());
+    }
+    writeFileSync(join(folder, `${layout}.gic`), writer.finish());
+    const [child, address] = await play(`${layout}.gic`, '127.0.0.1:0');
+    for (const name of ['webgl', 'webgpu']) {
+      const page = await open(name);
+      await call(page, 'follow', `ws://${address}`, layout, names);
+      await updates(page, 30);
+      const all = await call(page, 'seen');
+      const seen = all.slice(all.findIndex(({held}) => known.has(held?.join())));
+      assert.ok(seen.length >= 10, JSON.stringify(all.slice(0, 3)));
+      for (const {type: is, same, held} of seen) {
+        assert.equal(is.replace(/WebGL$/, ''), type);
+        assert.ok(same.every(Boolean), `${name}: ${names} on the GPU ${same}`);
+        assert.ok(known.has(held.join()), 'a state that the server never had');
+      }
+      assert.ok(seen.some(({uploadedBytes}) => uploadedBytes > 0), 'no update went to the GPU in parts');
+      await call(page, 'stop');
+      await page.close();
+    }
+    child.kill();
   });
 }
 

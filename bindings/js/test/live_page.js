@@ -2,7 +2,7 @@
 import * as THREE from 'three';
 import {GIClient} from 'gicodec/three';
 
-import {readWords} from './gpu_texels.js';
+import {readTexels, readWords} from './gpu_texels.js';
 
 const parameters = new URLSearchParams(location.search);
 const webgpu = parameters.has('webgpu');
@@ -23,7 +23,36 @@ async function begin() {
 const hex = (buffer) => Array.from(new Uint8Array(buffer, 0, 8), (byte) => byte.toString(16).padStart(2, '0')).join('');
 const digest = async (array) => hex(await crypto.subtle.digest('SHA-256', array));
 
+/** Whether the GPU has these texels: halves of four components, or bytes of one or four. */
+async function isOnGpu(texture, held) {
+  const {bytes, values} = await readTexels(renderer, texture);
+  const wanted = new Uint8Array(held.buffer);
+  if (bytes) return wanted.every((one, i) => one === bytes[i]);
+  const floats = new Float32Array(values.buffer).filter((_, i) => texture.format !== THREE.RedFormat || i % 4 === 0);
+  if (texture.type === THREE.HalfFloatType) return new Uint16Array(wanted.buffer).every((one, i) => one === THREE.DataUtils.toHalfFloat(floats[i]));
+  return wanted.every((one, i) => one === Math.round(255 * floats[i]));
+}
+
 window.page = {
+  /** Follows a server of a layout: what of each update is on the GPU. */
+  follow(url, layout, names) {
+    seen = [];
+    live = new GIClient(renderer, url, {metadata: () => ({'gicodec:layout': layout, 'gicodec:bounds': '0 0 0 1 1 1'})});
+    scene.add(live.object);
+    live.addEventListener('error', ({error}) => seen.push({error: error.message}));
+    let busy = false;
+    live.addEventListener('update', async ({uploadedBytes, state}) => {
+      renderer.render(scene, camera);
+      const [shown] = live.object.children, held = live.texels();
+      const textures = shown.isTextureVolume ? Object.fromEntries(shown.textures) : {[names[0]]: shown.texture};
+      if (uploadedBytes === 0 && busy) return;
+      busy = true;
+      const same = names.map((name) => isOnGpu(textures[name], held[name].slice()));
+      const digests = names.map((name) => digest(held[name].slice()));
+      seen.push({type: shown.type, uploadedBytes, time: state.time, same: await Promise.all(same), held: await Promise.all(digests)});
+      busy = false;
+    });
+  },
   start(url, options) {
     seen = [];
     events = [];

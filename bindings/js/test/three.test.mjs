@@ -7,7 +7,7 @@ import {join} from 'node:path';
 import {after, before, describe, test} from 'node:test';
 
 import {CHROMIUM_WITH_GPU, launch, pageOf, serve, serveByNginx} from './browser_support.mjs';
-import {bytes, golden, program, randomWords} from './support.mjs';
+import {bytes, program, randomWords} from './support.mjs';
 
 let browser, server;
 
@@ -15,7 +15,6 @@ before(async () => {
   server = await serve({
     '/webgl.html': pageOf('three_page'),
     '/webgpu.html': pageOf('three_page', true),
-    '/golden.gic': golden('native_strong.gic'),
     '/text.gic': 'no container',
   });
   browser = await launch(CHROMIUM_WITH_GPU);
@@ -110,7 +109,12 @@ for (const [name, type] of [['webgl', 'Float32Array'], ['webgpu', 'Uint16Array']
     });
 
     test('what cannot be shown is said', async () => {
-      assert.match(await call('failure', '/golden.gic'), /no volume that GILoader shows: it has .*--layout three/);
+      const {Writer} = await import('gicodec/encoder');
+      const components = [{name: 'age', type: 'uint', bits: 16, offset: 0}];
+      const writer = await Writer.create({points: {kind: 'textures', textures: [
+        {name: 'age', components, recordBytes: 2, grid: [2, 2, 1], block: [4, 4, 1], tiling: 'slices_xy_z'}]}});
+      server.put('/points.gic', writer.finish());
+      assert.match(await call('failure', '/points.gic'), /no texture that a GPU can have: it has volumes of kind textures/);
       assert.match(await call('failure', '/absent.gic'), /the server answers 404/);
       assert.match(await call('failure', '/text.gic'), /GicodecError: .*not/i);
       const cut = decode(made.file);

@@ -3,7 +3,7 @@ import {Decoder, GicodecError, open, peek, ready, useWorkers, type Player, type 
 import {connect, type ClientVolume} from 'gicodec/client';
 import {Encoder, Writer, ddgiIrradiance, volumeOfLayout, type VolumeDesc} from 'gicodec/encoder';
 import {GIClient, GILoader, captureLightProbeGrid, saveLightProbeGrid} from 'gicodec/three';
-import type {Camera, Scene, WebGLRenderer} from 'three';
+import type {Camera, Scene, Texture, WebGLRenderer} from 'three';
 import type {OwnBytes} from 'gicodec';
 
 export async function play(file: File): Promise<Texels> {
@@ -55,7 +55,10 @@ export async function light(scene: Scene, renderer: WebGLRenderer): Promise<OwnB
   loader.setPath('light/').setRequestHeader({authorization: 'x'});
   const grid = await loader.loadAsync('room.gic', ({loaded, total}) => console.log(loaded / total));
   scene.add(grid);
-  if ('states' in grid) {
+  if ('slice' in grid) {
+    const map: Texture = grid.slice('lightmap', 4);
+    console.log(grid.layout, map.name, grid.textures.get('Indirection'));
+  } else if ('resolution' in grid) {
     grid.state = 12.5;
     await grid.setState(grid.states[0]?.name ?? 'noon');
     // @ts-expect-error: a state is a number or a name

@@ -1,5 +1,5 @@
 import type {
-  Box3, Camera, Data3DTexture, DataArrayTexture, EventDispatcher, Group, Light, Loader, LoadingManager, Object3D, Vector3,
+  Box3, Camera, Data3DTexture, DataArrayTexture, EventDispatcher, Group, Light, Loader, LoadingManager, Object3D, Texture, Vector3,
 } from 'three';
 import type {ClientOptions, ClientState} from './client.js';
 import type {OwnBytes, Source, Texels} from './index.js';
@@ -7,26 +7,34 @@ import type {OwnBytes, Source, Texels} from './index.js';
 /** A frame of a container. `time` is null where states have names alone. */
 export interface State { readonly frame: number; readonly time: number | null; readonly name: string }
 
-/** LightProbeGrid, or LightProbeGridWebGL, with the states of a container. */
-export interface StateGrid extends Light {
+/** What a loaded object has: the states of its container, by frame. */
+export interface WithStates {
+  readonly states: readonly State[];
+  /** A time or a name. Decoded when it is set: see setState(). */
+  state: number | string;
+  /** Resolves once that state is shown, or a later one was asked for. Events: "state", "error". */
+  setState(state: number | string): Promise<void>;
+}
+
+/** LightProbeGrid, or LightProbeGridWebGL. Between two states it shows a blend of them. */
+export interface StateGrid extends Light, WithStates {
   readonly isLightProbeGrid: true;
   readonly resolution: Vector3;
   readonly boundingBox: Box3;
   priority: number;
   readonly texture: Data3DTexture | null;
-  /** Its states, by frame. */
-  readonly states: readonly State[];
-  /** A time, between two states a blend of them, or a name. Decoded when it is set: see setState(). */
-  state: number | string;
-  /** Resolves once the texture shows that state, or a later one was asked for. Events: "state", "error". */
-  setState(state: number | string): Promise<void>;
 }
 
+/** What a volume becomes. Each has dispose(). */
+export type LoadedVolume = StateGrid | (ProbeVolume & WithStates) | (AmbientCubeVolume & WithStates) | (TextureVolume & WithStates);
+/** Several volumes come as a Group. */
+export type Loaded = LoadedVolume | (Group & {dispose(): void});
+
 /**
- * Loads containers (.gic): `scene.add(await new GILoader().loadAsync('room.gic'))` lights a scene. Several
- * volumes come as a Group. Where the server sends parts of files, only what a state needs is loaded.
+ * Loads containers (.gic): `scene.add(await new GILoader().loadAsync('room.gic'))` lights a scene.
+ * Where the server sends parts of files, only what a state needs is loaded.
  */
-export class GILoader extends Loader<StateGrid | ProbeVolume | Group> {
+export class GILoader extends Loader<Loaded> {
   constructor(manager?: LoadingManager);
   /** Turns textures of float to half, which loses bits. */
   half: boolean;
@@ -34,38 +42,62 @@ export class GILoader extends Loader<StateGrid | ProbeVolume | Group> {
   detectSupport(renderer: object): this;
   /** Decodes in that many workers, whatever loads; 0: on the page's thread. */
   setWorkerLimit(count: number): this;
-  parse(source: Source): Promise<StateGrid | ProbeVolume | Group>;
-  parse(source: Source, onLoad: (object: StateGrid | ProbeVolume | Group) => void, onError?: (error: unknown) => void): void;
+  parse(source: Source): Promise<Loaded>;
+  parse(source: Source, onLoad: (object: Loaded) => void, onError?: (error: unknown) => void): void;
   abort(): this;
   /** Ends what loads. Objects that were made end with their own dispose(). */
   dispose(): void;
 }
 
 /**
- * A volume of kind probes (DDGI), which lights what is drawn with it: in WebGPURenderer all, in WebGLRenderer
- * the lit materials of its scene, as they are first seen.
+ * A volume that lights what is drawn with it: in WebGPURenderer all, in WebGLRenderer the lit materials of its
+ * scene, as they are first seen.
  */
-export class ProbeVolume extends Light {
-  private constructor();
-  readonly isProbeVolume: true;
+export abstract class VolumeLight extends Light {
   /** False: only what light() is given is lit, in WebGLRenderer. */
   autoLight: boolean;
-  /** From the first probe to the last, before the volume is moved. */
+  light(object: Object3D): void;
+  /** Probes or voxels along each axis. */
+  readonly grid: readonly number[];
+  /** Before the volume is moved: from the first probe to the last, or all that is lit. */
   readonly boundingBox: Box3;
+}
+
+/** Of kind probes (DDGI): irradiance and visibility. `state` shows the last frame at or before a time. */
+export class ProbeVolume extends VolumeLight {
+  private constructor();
+  readonly isProbeVolume: true;
   /** As they are on the GPU, texel for texel those of the container. */
   readonly textures: {readonly color: DataArrayTexture, readonly visibility: DataArrayTexture};
-  light(object: Object3D): void;
-  /** Probes along each axis. A probe's number is x + nx·(y + ny·z). */
-  readonly grid: readonly number[];
+  /** A probe's number is x + nx·(y + ny·z). */
   isActive(probe: number): boolean;
   /** Where a probe stands, before the volume is moved. */
   probePosition(probe: number, target?: Vector3): Vector3;
   /** When each probe changed last, as performance.now() says it. */
   readonly changedAt: Float64Array;
-  readonly states: readonly State[];
-  /** A time, for the last state at or before it, or a name. */
-  state: number | string;
-  setState(state: number | string): Promise<void>;
+}
+
+/** Ambient cubes in Bevy's layout, which light what is in their box. */
+export class AmbientCubeVolume extends VolumeLight {
+  private constructor();
+  readonly isAmbientCubeVolume: true;
+  /** As it is on the GPU, texel for texel that of the container. */
+  readonly texture: Data3DTexture;
+}
+
+/** A volume that nothing here shades by: its textures, for shaders of your own. */
+export class TextureVolume extends Object3D {
+  private constructor();
+  readonly isTextureVolume: true;
+  /** The engine's, as `gicodec encode --layout` names it; "": the container does not say it. */
+  readonly layout: string;
+  /** By name, texel for texel those of the container. */
+  readonly textures: ReadonlyMap<string, Texture>;
+  /** What it lights; null: the container does not say it. */
+  readonly boundingBox: Box3 | null;
+  /** A slice of a texture as a texture of its own, which follows the state: a layer of a light map. */
+  slice(name: string, slice?: number): Texture;
+  dispose(): void;
 }
 
 /**
@@ -91,6 +123,11 @@ export interface GIClientOptions extends ClientOptions {
   /** False: decodes on the page's thread, where a content security policy has no worker-src blob:. */
   worker?: boolean;
   signal?: AbortSignal;
+  /**
+   * The metadata that a file of such a volume would have (FORMAT.md, "Keys"), which servers do not send:
+   * `() => ({'gicodec:layout': 'bevy', 'gicodec:bounds': '0 0 0 8 4 8'})`.
+   */
+  metadata?: (volume: {id: number, name: string, kind: string}) => Record<string, string>;
 }
 
 export interface GIClientStatistics {

@@ -40,8 +40,10 @@ async function openContainer(source, name, beside = false) {
   showTitle(name);
   const [first] = lights;
   const probes = first.grid ?? first.resolution?.toArray();
-  showFacts([['file', megabytes(size)], ['states', first.states.length], ...(probes ? [['probes', probes.join(' × ')]] : [])]);
-  if (first.isProbeVolume && find('modes').querySelector(':checked').value !== 'direct' && !stage.lit) setProbes('light');
+  showFacts([['file', megabytes(size)], ['states', first.states.length], ...(probes ? [['probes', probes.join(' × ')]] : []),
+             ...lights.filter(({isTextureVolume}) => isTextureVolume).map(({name: volume, textures}) => (
+               [volume, `${[...textures.keys()].join(', ')}, which nothing on this page shades by`]))]);
+  if (find('modes').querySelector(':checked').value !== 'direct' && !stage.lit) setProbes('light');
 }
 
 function setProbes(kind) {

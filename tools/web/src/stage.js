@@ -7,6 +7,7 @@ import {OrbitControls} from 'three/addons/controls/OrbitControls.js';
 import {GLTFLoader} from 'three/addons/loaders/GLTFLoader.js';
 import {ProbeVolumeHelper} from 'gicodec/three';
 
+import {LitSpheres} from './lit_spheres.js';
 import {WalkControls} from './walk.js';
 
 export class Stage {
@@ -115,18 +116,18 @@ export class Stage {
     this.#helpers.forEach((helper) => helper.dispose());
     this.#helpers = [];
     if (kind === 'none') return;
-    for (const volume of this.#volumes().filter(({isProbeVolume}) => isProbeVolume)) {
-      const helper = new ProbeVolumeHelper(volume, {colors: kind});
-      volume.add(helper);
-      this.#helpers.push(helper);
+    for (const volume of this.#volumes()) {
+      const helper = volume.isProbeVolume ? new ProbeVolumeHelper(volume, {colors: kind}) : new LitSpheres(volume);
+      (volume.isProbeVolume ? volume : this.#scene).add(helper);
+      this.#helpers.push({volume, helper, update: () => helper.update?.(), dispose: () => helper.dispose()});
     }
   }
 
   /** What changed is shown. */
   refresh() {
     if (this.#probes === 'none') return;
-    const volumes = this.#volumes().filter(({isProbeVolume}) => isProbeVolume);
-    const same = volumes.length === this.#helpers.length && volumes.every((volume, i) => this.#helpers[i].parent === volume);
+    const volumes = this.#volumes();
+    const same = volumes.length === this.#helpers.length && volumes.every((volume, i) => this.#helpers[i].volume === volume);
     if (!same) this.probes = this.#probes;  // the server has other volumes
     else this.#helpers.forEach((helper) => helper.update());
   }

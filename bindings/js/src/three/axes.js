@@ -17,3 +17,19 @@ export function turnOf(metadata) {
       .map((axis) => new Vector3(...axis).multiplyScalar(unitOf(metadata)));
   return new Matrix4().makeBasis(x, y, z);
 }
+
+/** Least corner and size of the box that a volume lights, in its units; null where a file does not say it. */
+export function boxOf(metadata) {
+  const bounds = (metadata['gicodec:bounds'] ?? '').split(' ').map(Number);
+  if (bounds.length !== 6 || !bounds.every(Number.isFinite) || ![0, 1, 2].every((axis) => bounds[axis] < bounds[axis + 3])) return null;
+  return {least: bounds.slice(0, 3), size: bounds.slice(3).map((at, axis) => at - bounds[axis])};
+}
+
+/** The same, or a box around the origin of a unit for each of these cells. */
+export function boxOrCells(metadata, cells) {
+  const box = boxOf(metadata);
+  if (box) return box;
+  console.warn('GILoader: the container does not say which box its volume lights: a unit for each probe is taken. ' +
+               'gicodec encode --bounds says it.');
+  return {least: cells.map((side) => -side / 2), size: cells};
+}

@@ -3,12 +3,12 @@ import {EventDispatcher, Group, Vector3} from 'three';
 import workerText from 'gicodec:text/three/client_worker';
 
 import {ClientHost} from './client_host.js';
-import {ProbeVolume, probeTextures} from './probe_volume.js';
-import {forRows} from './tilings.js';
+import {findShown, useVolumes} from './shown.js';
+import {Tiles} from './tilings.js';
 
 /** Milliseconds between viewpoints. */
 const VIEW_EVERY = 100;
-const OPTIONS = ['token', 'delivery', 'budgetBlocks', 'budgetBytes', 'limits', 'timeout', 'everything', 'worker', 'signal'];
+const OPTIONS = ['token', 'delivery', 'budgetBlocks', 'budgetBytes', 'limits', 'timeout', 'everything', 'worker', 'signal', 'metadata'];
 
 /**
  * Follows a server. `object` has its volumes, and is part of the scene. Events: "connected", "update" (with
@@ -20,6 +20,8 @@ export class GIClient extends EventDispatcher {
   statistics = {updates: 0, bytes: 0, blocks: 0, uploadedBytes: 0, decodeMs: 0, uploadMs: 0, losses: 0};
   state = null;
   #renderer;
+  #metadata;
+  #turn = Promise.resolve();
   #send;
   #end = () => {};
   #volumes = new Map();
@@ -32,8 +34,9 @@ export class GIClient extends EventDispatcher {
     for (const name of Object.keys(options)) {
       if (!OPTIONS.includes(name)) throw new TypeError(`there is no option ${name}: there are ${OPTIONS.join(', ')}`);
     }
-    const {worker = true, signal, ...rest} = options;
+    const {worker = true, signal, metadata, ...rest} = options;
     this.#renderer = renderer;
+    this.#metadata = metadata;
     this.object.name = 'GIClient';
     if (signal?.aborted) throw signal.reason;
     signal?.addEventListener('abort', () => this.dispose(), {once: true});
@@ -43,7 +46,7 @@ export class GIClient extends EventDispatcher {
   async #start(worker, message) {
     const {compiledClient} = await import('gicodec:entry/client');  // with its own module
     const module = await compiledClient();
-    if (this.#renderer.isWebGPURenderer) await ProbeVolume.useNodes(this.#renderer);
+    await useVolumes(this.#renderer);
     if (this.#ended) return;
     const take = (one) => this.#take(one);
     if (worker) {
@@ -61,13 +64,9 @@ export class GIClient extends EventDispatcher {
     this.#send({type: 'connect', module, ...message});
   }
 
+  /** Follows messages one after the other. */
   #take({type, ...values}) {
-    if (this.#ended) return;
-    try {
-      this.#follow(type, values);
-    } catch (error) {
-      this.#fail(error);
-    }
+    this.#turn = this.#turn.then(() => this.#ended || this.#follow(type, values)).catch((error) => this.#fail(error));
   }
 
   #follow(type, values) {
@@ -91,28 +90,33 @@ export class GIClient extends EventDispatcher {
     this.dispatchEvent({type: 'error', error});
   }
 
-  #setVolumes(volumes) {
-    for (const {light} of this.#volumes.values()) {
-      light.removeFromParent();
-      light.dispose();
-    }
-    this.#volumes.clear();
+  async #setVolumes(volumes) {
+    this.#forget();
     for (const {id, textures, ...rest} of volumes) {
-      const volume = {...rest, metadata: {}, firstTexture: 0, textures: textures.length};
-      const whole = textures.map((one) => ({...one, metadata: {}}));
-      if (!probeTextures(volume, whole)) {
-        console.info(`GIClient: ${JSON.stringify(volume.name)} is not shown: it is of kind ${volume.kind}, or has no ` +
-                     'irradiance and visibility');
+      const volume = {...rest, metadata: this.#metadata?.(rest) ?? {}, firstTexture: 0, textures: textures.length};
+      const whole = textures.map((one) => ({...one, ArrayType: globalThis[one.arrayType], metadata: {}}));
+      const found = findShown(volume, whole);
+      if (!found) {
+        console.info(`GIClient: ${JSON.stringify(volume.name)}, of kind ${volume.kind}, has no texture that a GPU can have`);
         continue;
       }
-      const light = new ProbeVolume(volume, whole, this.#renderer);
-      const texels = whole.map(({arrayType, textureBytes}) => new globalThis[arrayType](
-          textureBytes / globalThis[arrayType].BYTES_PER_ELEMENT));
-      light.setTexels(new Map(texels.entries()));
-      this.#volumes.set(id, {light, texels, textures: whole});
-      this.object.add(light);
+      const shown = await found.make(this.#renderer);
+      if (this.#ended) return shown.dispose();
+      const texels = new Map(whole.map(({ArrayType, textureBytes}, i) => (
+          [i, new ArrayType(textureBytes / ArrayType.BYTES_PER_ELEMENT)])));
+      shown.setTexels(texels);
+      this.#volumes.set(id, {shown, texels, textures: whole, tiles: whole.map((one) => new Tiles(one))});
+      this.object.add(shown);
     }
     this.dispatchEvent({type: 'volumes'});
+  }
+
+  #forget() {
+    for (const {shown} of this.#volumes.values()) {
+      shown.removeFromParent();
+      shown.dispose();
+    }
+    this.#volumes.clear();
   }
 
   #update({state, decodeMs, geometries, parts}) {
@@ -120,20 +124,19 @@ export class GIClient extends EventDispatcher {
     const before = this.state;
     this.state = state;
     let uploaded = 0, blocks = 0;
-    for (const {id, geometry} of geometries) this.#volumes.get(id)?.light.setGeometry(geometry);
+    for (const {id, geometry} of geometries) this.#volumes.get(id)?.shown.setGeometry(geometry);
     for (const {id, texture, blocks: changed, bytes} of parts) {
       const volume = this.#volumes.get(id);
       if (!volume) continue;
-      const into = volume.texels[texture];
-      const all = new Uint8Array(into.buffer);
+      const all = new Uint8Array(volume.texels.get(texture).buffer);
       let at = 0;
       for (const block of changed) {
-        forRows(volume.textures[texture], block, (first, end) => {
+        volume.tiles[texture].forRows(block, (first, end) => {
           all.set(bytes.subarray(at, at + end - first), first);
           at += end - first;
         });
       }
-      uploaded += volume.light.setBlocks(texture, changed);
+      uploaded += volume.shown.setBlocks(texture, changed, volume.texels);
       blocks += changed.length;
     }
     const uploadMs = performance.now() - began;
@@ -152,8 +155,8 @@ export class GIClient extends EventDispatcher {
 
   /** The texels of a volume's textures as of the last update, by name. */
   texels(name = undefined) {
-    const found = [...this.#volumes.values()].find(({light}) => name === undefined || light.name === name);
-    return found && Object.fromEntries(found.textures.map((one, i) => [one.name, found.texels[i]]));
+    const found = [...this.#volumes.values()].find(({shown}) => name === undefined || shown.name === name);
+    return found && Object.fromEntries(found.textures.map((one, i) => [one.name, found.texels.get(i)]));
   }
 
   /** Tells the server where the camera is, at most ten times a second, so that it sends what is near first. */
@@ -174,8 +177,7 @@ export class GIClient extends EventDispatcher {
     this.#ended = true;
     this.#send?.({type: 'close'});
     setTimeout(this.#end, 1000);  // once the goodbye is sent
-    for (const {light} of this.#volumes.values()) light.dispose();
-    this.#volumes.clear();
+    this.#forget();
     this.object.removeFromParent();
   }
 }

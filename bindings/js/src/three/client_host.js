@@ -3,7 +3,7 @@
 import {Client} from '../client.js';
 import {Connection} from '../connection.js';
 import {Instance, bytesOf} from '../instance.js';
-import {forRows, tilingOf} from './tilings.js';
+import {Tiles} from './tilings.js';
 
 export class ClientHost {
   #post;
@@ -12,6 +12,7 @@ export class ClientHost {
   #sent = 0;       // the serial of what the page has
   #busy = false;   // it has not answered yet
   #known = '';     // the volumes that it knows
+  #tiles = new Map();  // of their textures, by id
   #decodeMs = 0;
   #closed = false;
 
@@ -77,18 +78,19 @@ export class ClientHost {
     if (known !== this.#known) {
       this.#known = known;
       this.#sent = 0;
+      this.#tiles = new Map(volumes.map(({id, textures}) => [id, textures.map((desc) => new Tiles(desc))]));
       this.#post({type: 'volumes', volumes: volumes.map(({id, name, kind, geometry, textures}) => ({
         id, name, kind, geometry, textures: textures.map(({ArrayType, ...desc}) => ({...desc, arrayType: ArrayType.name}))}))});
     }
     const parts = [], transfer = [];
     for (const volume of volumes) {
-      volume.textures.forEach((desc, texture) => {
-        if (!tilingOf(desc)) return;
+      volume.textures.forEach((_, texture) => {
+        const tiles = this.#tiles.get(volume.id)[texture];
         const blocks = volume.changed(texture, this.#sent);
         if (blocks.length === 0) return;
         const all = bytesOf(volume.texels(texture));
         const pieces = [];
-        for (const block of blocks) forRows(desc, block, (first, end) => pieces.push([first, end]));
+        for (const block of blocks) tiles.forRows(block, (first, end) => pieces.push([first, end]));
         const bytes = new Uint8Array(pieces.reduce((sum, [first, end]) => sum + end - first, 0));
         let at = 0;
         for (const [first, end] of pieces) {

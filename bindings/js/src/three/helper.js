@@ -3,8 +3,6 @@ import {
   Box3Helper, Color, DataUtils, DynamicDrawUsage, Group, InstancedMesh, Matrix4, MeshBasicMaterial, SphereGeometry, Vector3,
 } from 'three';
 
-import {forRows} from './tilings.js';
-
 const FRESH = new Color(0xff5020), OLD = new Color(0x203860);
 
 /** Decoders of texels to radiance's code: component i of the texel at a byte. */
@@ -74,12 +72,12 @@ export class ProbeVolumeHelper extends Group {
   }
 
   #light(probe, color) {
-    const {color: desc} = this.#volume.descs, {data} = this.#volume.textures.color.image;
+    const {desc, tiles} = this.#volume.irradiance, {data} = this.#volume.textures.color.image;
     const view = new DataView(data.buffer, data.byteOffset, data.byteLength);
     const bytes = desc.textureBytes / (desc.width * desc.height * desc.slices);
     const code = CODES[desc.format], sum = [0, 0, 0];
     let texels = 0;
-    forRows(desc, probe, (first, end) => {
+    tiles.forRows(probe, (first, end) => {
       for (let texel = first; texel < end; texel += bytes, ++texels) {
         for (let i = 0; i < 3; ++i) sum[i] += this.#volume.kind.linear ? code(view, texel, i) : code(view, texel, i) ** 5;
       }

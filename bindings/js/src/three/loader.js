@@ -2,10 +2,8 @@
 import {Group, Loader} from 'three';
 import {fetchRanges, open, useWorkers} from 'gicodec:entry/index';
 
-import {makeProbeGrid} from './probe_grid.js';
-import {ProbeVolume, probeTextures} from './probe_volume.js';
-import {States} from './states.js';
-import {filtersFloat} from './texture_formats.js';
+import {findShown, useVolumes} from './shown.js';
+import {States, addStates} from './states.js';
 
 /** What can be read anywhere, since states are: parts of a file, and all of a stream. */
 async function seekable(source) {
@@ -15,8 +13,6 @@ async function seekable(source) {
   const stream = source instanceof Response && source.ok ? source.body : source;
   return stream instanceof ReadableStream ? new Response(stream).arrayBuffer() : source;
 }
-
-const THREE_LAYOUTS = ['three', 'three-float32'];
 
 /** Loads containers (.gic). */
 export class GILoader extends Loader {
@@ -124,31 +120,24 @@ export class GILoader extends Loader {
   }
 
   async #objects(player, whole) {
-    const known = player.volumes.map((volume) => {
-      if (THREE_LAYOUTS.includes(volume.metadata['gicodec:layout'])) return {volume, textures: [volume.firstTexture]};
-      const probes = probeTextures(volume, player.textures);
-      return probes && {volume, probes, textures: [probes.color, probes.visibility]};
-    }).filter(Boolean);
-    if (known.length === 0) {
-      const kinds = player.volumes.map(({kind, metadata}) => metadata['gicodec:layout'] ?? kind).join(', ');
-      throw new TypeError(`the container has no volume that GILoader shows: it has ${kinds}. It shows probes with ` +
-                          'irradiance and visibility, and LightProbeGrids, which gicodec encode --layout three packs');
+    const shown = player.volumes.map((volume) => findShown(volume, player.textures)).filter(Boolean);
+    if (shown.length === 0) {
+      const kinds = player.volumes.map(({kind}) => kind).join(', ');
+      throw new TypeError(`the container has no texture that a GPU can have: it has volumes of kind ${kinds}`);
     }
     const frames = await player.frames();
     if (frames.length === 0) throw new RangeError('the container has no frames');
     if (whole && frames.length > 1) {
       console.info(`GILoader: the server of ${whole} sends no parts of files, so all states are loaded at once`);
     }
-    const states = new States(player, frames, known.flatMap(({textures}) => textures));
+    const states = new States(player, frames, shown.flatMap(({textures}) => textures));
     const release = states.use();
     const objects = [];
     try {
-      if (this.#renderer?.isWebGPURenderer && known.some(({probes}) => probes)) {
-        await ProbeVolume.useNodes(this.#renderer);
-      }
-      for (const {volume, probes} of known) {
-        objects.push(probes ? await ProbeVolume.make(states, volume, player.textures, this.#renderer)
-                            : await this.#grid(states, player, volume));
+      await useVolumes(this.#renderer);
+      for (const {make} of shown) {
+        objects.push(await make(this.#renderer, {half: this.half}));
+        await addStates(objects.at(-1), states);
       }
     } catch (error) {
       objects.forEach((object) => object.dispose());
@@ -164,18 +153,5 @@ export class GILoader extends Loader {
       dispose?.();
     };
     return group;
-  }
-
-  async #grid(states, player, volume) {
-    const place = volume.firstTexture, texture = player.textures[place];
-    const isHalf = texture.ArrayType === Uint16Array;
-    const half = !isHalf && (this.half || !filtersFloat(this.#renderer));
-    if (half && !this.half) {
-      console.info('GILoader: this device cannot filter textures of float, so they become half, which loses bits');
-    }
-    const Grid = this.#renderer?.isWebGPURenderer
-      ? (await import('three/addons/lighting/LightProbeGrid.js')).LightProbeGrid
-      : (await import('three/addons/lighting/LightProbeGridWebGL.js')).LightProbeGridWebGL;
-    return makeProbeGrid(states, volume, texture, place, {Grid, half, renderer: this.#renderer});
   }
 }

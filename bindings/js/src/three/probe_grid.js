@@ -1,9 +1,12 @@
-// Containers of three.js's own layout (engines.h, three_volume) as LightProbeGrid.
-import {Data3DTexture, DataUtils, FloatType, HalfFloatType, LinearFilter, RGBAFormat} from 'three';
+// Volumes of three.js's own layout (engines.h, three_volume) as LightProbeGrid.
+import {DataUtils} from 'three';
 
-import {AXES, unitOf} from './axes.js';
-import {uploadAll} from './partial_upload.js';
-import {addStates} from './states.js';
+import {AXES, boxOrCells, unitOf} from './axes.js';
+import {uploadAll, uploadBlocks} from './partial_upload.js';
+import {filtersFloat, makeTexture} from './texture_formats.js';
+import {Tiles} from './tilings.js';
+
+const LAYOUTS = ['three', 'three-float32'];
 
 /** Textures of a grid's atlas along z, and slices of each in front and behind, which repeat the nearest one. */
 export const PARTS = 7, PADDING = 1;
@@ -15,28 +18,6 @@ function resolutionOf({name, width, height, slices}) {
     throw new RangeError(`${JSON.stringify(name)} has ${slices} slices, which are no ${PARTS} textures of a LightProbeGrid`);
   }
   return [width, height, depth];
-}
-
-/** Least corner and size of the box that a volume lights, in metres. */
-function boxOf(metadata, resolution) {
-  const bounds = (metadata['gicodec:bounds'] ?? '').split(' ').map(Number);
-  const unit = unitOf(metadata);
-  if (bounds.length !== 6 || !bounds.every(Number.isFinite) || ![0, 1, 2].every((axis) => bounds[axis] < bounds[axis + 3])) {
-    console.warn('GILoader: the container does not say which box its grid lights: a metre for each probe is ' +
-                 'taken. gicodec encode --bounds says it.');
-    return {least: resolution.map((side) => -side / 2), size: resolution};
-  }
-  return {least: bounds.slice(0, 3).map((at) => at * unit),
-          size: bounds.slice(3).map((at, axis) => (at - bounds[axis]) * unit)};
-}
-
-/** A 3D texture over texels, which it copies. */
-function makeTexture([width, height], slices, Type, type) {
-  const texture = new Data3DTexture(new Type(width * height * slices * 4), width, height, slices);
-  texture.format = RGBAFormat;
-  texture.type = type;
-  texture.minFilter = texture.magFilter = LinearFilter;
-  return texture;
 }
 
 /** The nearest half; 65504 for what is beyond. */
@@ -62,30 +43,58 @@ function blend(out, first, second, part, half) {
   }
 }
 
-/** A LightProbeGrid of a volume, with states. `Grid` is its class, `half` turns float to half. */
-export async function makeProbeGrid(states, volume, texture, place, {Grid, half, renderer}) {
+/** The number of the texture of such a volume; null: it is no such volume. */
+export function gridTextures({metadata, firstTexture}) {
+  return LAYOUTS.includes(metadata['gicodec:layout']) ? [firstTexture] : null;
+}
+
+/** A LightProbeGrid of a volume. `half` turns float to half. */
+export async function makeProbeGrid(volume, textures, renderer, {half: wanted = false} = {}) {
   const axes = volume.metadata['gicodec:axes'] ?? AXES;
   if (axes !== AXES) {
     throw new RangeError(`the axes of ${JSON.stringify(volume.name)} are ${axes}, and a LightProbeGrid's are ${AXES}: ` +
                          'bake it with these');
   }
-  const resolution = resolutionOf(texture);
-  const {least, size} = boxOf(volume.metadata, resolution);
-  const grid = new Grid(...size, ...resolution);
+  const place = volume.firstTexture, desc = textures[place];
+  const resolution = resolutionOf(desc);
+  const {least, size} = boxOrCells(volume.metadata, resolution), unit = unitOf(volume.metadata);
+  const isHalf = desc.ArrayType === Uint16Array;
+  const half = !isHalf && (wanted || !filtersFloat(renderer));
+  if (half && !wanted) {
+    console.info('GILoader: this device cannot filter textures of float, so they become half, which loses bits');
+  }
+  const Grid = renderer?.isWebGPURenderer
+    ? (await import('three/addons/lighting/LightProbeGrid.js')).LightProbeGrid
+    : (await import('three/addons/lighting/LightProbeGridWebGL.js')).LightProbeGridWebGL;
+  const grid = new Grid(...size.map((side) => side * unit), ...resolution);
   grid.name = volume.name;
-  grid.position.set(...least.map((at, axis) => at + size[axis] / 2));
+  grid.position.set(...least.map((at, axis) => (at + size[axis] / 2) * unit));
   grid.updateBoundingBox();
 
-  const halves = half || texture.ArrayType === Uint16Array;
-  const shown = makeTexture(resolution, texture.slices, halves ? Uint16Array : Float32Array,
-                            halves ? HalfFloatType : FloatType);
-  await addStates(grid, states, (first, second, part) => {
+  const halves = half || isHalf;
+  const shown = makeTexture({...desc, format: `R${halves ? '16G16B16A16' : '32G32B32A32'}_SFLOAT`}, renderer, true);
+  shown.image.data = new (halves ? Uint16Array : Float32Array)(desc.width * desc.height * desc.slices * 4);
+  const setTexels = (first, second = first, part = 0) => {
     blend(shown.image.data, first.get(place), second.get(place), part, halves);
     uploadAll(renderer, shown);
-  }, {free() {
-    shown.dispose();
-    if (grid.texture === shown) grid.texture = null;
-  }});
+  };
+  const tiles = new Tiles(desc);
+  const setBlocks = (texture, blocks, all) => {
+    if (half) return setTexels(all), 0;
+    const into = new Uint8Array(shown.image.data.buffer), from = all.get(place);
+    const bytes = new Uint8Array(from.buffer, from.byteOffset, from.byteLength);
+    for (const block of blocks) tiles.forRows(block, (begin, end) => into.set(bytes.subarray(begin, end), begin));
+    return uploadBlocks(renderer, shown, desc, tiles, blocks);
+  };
+  const dispose = grid.dispose.bind(grid);
+  Object.defineProperties(grid, {
+    blends: {value: true}, setTexels: {value: setTexels}, setBlocks: {value: setBlocks}, setGeometry: {value() {}},
+    dispose: {configurable: true, value() {
+      shown.dispose();
+      if (grid.texture === shown) grid.texture = null;
+      dispose();
+    }},
+  });
   grid.texture = shown;
   return grid;
 }

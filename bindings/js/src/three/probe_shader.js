@@ -6,12 +6,10 @@ export const probeFunctions = (id, {words, linear}) => /* glsl */`
 uniform highp ${words ? 'usampler2DArray' : 'sampler2DArray'} gi${id}Color;
 uniform highp sampler2DArray gi${id}Visibility;
 uniform highp sampler2DArray gi${id}Active;
-uniform mat4 gi${id}FromWorld;
 uniform vec3 gi${id}Origin, gi${id}Spacing;
 uniform ivec3 gi${id}Grid, gi${id}Scroll;
 uniform mat3 gi${id}ColorTile, gi${id}VisibilityTile;  // column, row and slice of a block's tile
 uniform vec3 gi${id}ColorSize, gi${id}VisibilitySize;  // texels of a tile, before its core, and of its core
-uniform float gi${id}Intensity;
 
 vec2 gi${id}Octahedral(vec3 d) {
   vec2 p = d.xy / (abs(d.x) + abs(d.y) + abs(d.z));
@@ -36,7 +34,6 @@ vec3 gi${id}ColorAt(vec3 place) {
 vec3 gi${id}ColorAt(vec3 place) {
   return textureLod(gi${id}Color, vec3(place.xy / vec2(textureSize(gi${id}Color, 0).xy), place.z), 0.0).rgb;
 }`}
-// Irradiance over pi.
 vec3 gi${id}Light(vec3 worldPosition, vec3 worldNormal, vec3 worldToViewer) {
   vec3 position = (gi${id}FromWorld * vec4(worldPosition, 1.0)).xyz;
   vec3 normal = normalize(mat3(gi${id}FromWorld) * worldNormal);
@@ -73,59 +70,6 @@ vec3 gi${id}Light(vec3 worldPosition, vec3 worldNormal, vec3 worldToViewer) {
     light += weight * ${linear ? 'sqrt(code)' : 'pow(code, vec3(2.5))'};  // half of the gamma; the rest after mixing
     sum += weight;
   }
-  return sum > 0.0 ? (light / sum) * (light / sum) * gi${id}Intensity : vec3(0.0);
+  return sum > 0.0 ? (light / sum) * (light / sum) : vec3(0.0);
 }
 `;
-
-/** What adds that light to a material's irradiance. */
-export const probeIrradiance = (id) => /* glsl */`
-#if defined(RE_IndirectDiffuse)
-  irradiance += PI * gi${id}Light(((vec4(geometryPosition, 1.0) - viewMatrix[3]) * viewMatrix).xyz,
-                                  (vec4(geometryNormal, 0.0) * viewMatrix).xyz, (vec4(geometryViewDir, 0.0) * viewMatrix).xyz);
-#endif
-`;
-
-const IN_FRONT = '#include <lights_pars_begin>', BEHIND = '#include <lights_fragment_begin>';
-
-/** By material: what it did before, and the volumes that light it. */
-const patched = new WeakMap();
-
-/** Lets a material be lit by a volume, too. */
-export function patchMaterial(material, id, kind, uniforms) {
-  const entry = patched.get(material) ?? install(material);
-  entry.lights.set(id, {kind, uniforms});
-  material.needsUpdate = true;
-}
-
-/** Takes a volume's light off a material; without any the material is as it was. */
-export function restoreMaterial(material, id) {
-  const entry = patched.get(material);
-  if (!entry?.lights.delete(id)) return;
-  material.needsUpdate = true;
-  if (entry.lights.size > 0 || material.onBeforeCompile !== entry.hook) return;  // somebody else built on the hook
-  Object.assign(material, entry.before);
-  patched.delete(material);
-}
-
-function install(material) {
-  const lights = new Map();
-  const {onBeforeCompile, customProgramCacheKey} = material;
-  const hook = function before(shader, renderer) {
-    onBeforeCompile.call(this, shader, renderer);
-    for (const [id, {kind, uniforms}] of lights) {
-      Object.assign(shader.uniforms, uniforms);
-      shader.fragmentShader = shader.fragmentShader
-          .replace(IN_FRONT, `${IN_FRONT}\n${probeFunctions(id, kind)}`)
-          .replace(BEHIND, `${BEHIND}\n${probeIrradiance(id)}`);
-    }
-  };
-  material.onBeforeCompile = hook;
-  material.customProgramCacheKey = function key() {
-    const ours = [...lights].map(([id, {kind}]) => `gi${id} ${kind.words} ${kind.linear}`);
-    // The usual key is the text of the hook, which is ours now.
-    return `${customProgramCacheKey.call(this)} ${onBeforeCompile} ${ours.join(' ')}`;
-  };
-  const entry = {lights, hook, before: {onBeforeCompile, customProgramCacheKey}};
-  patched.set(material, entry);
-  return entry;
-}

@@ -97,19 +97,18 @@ export class States {
 }
 
 /**
- * Gives an object `states`, `state`, which may be set to a time or a name, setState(), which resolves once
- * it is shown, and a dispose() that calls `free`. `show(first, second, part)` takes the textures of two
- * frames; without `blends` the second is the first. Resolves once the first state is shown.
+ * Gives an object that shows a volume (shown.js) `states`, `state`, which may be set to a time or a name, and
+ * setState(), which resolves once it is shown. Resolves once the first state is.
  */
-export async function addStates(object, states, show, {free = () => {}, blends = true} = {}) {
+export async function addStates(object, states) {
   const release = states.use();
   let state = null, asked = 0, ended = false;
   const go = async ({first, second, part}, wanted) => {
     const turn = ++asked;
     state = wanted;
     try {
-      const [a, b] = await Promise.all([states.frame(first), states.frame(blends ? second : first)]);
-      if (turn === asked) show(a, b, part);
+      const [a, b] = await Promise.all([states.frame(first), states.frame(object.blends ? second : first)]);
+      if (turn === asked) object.setTexels(a, b, part);
     } catch (error) {
       if (turn === asked) throw error;
     }
@@ -134,7 +133,6 @@ export async function addStates(object, states, show, {free = () => {}, blends =
       if (ended) return;
       ended = true;
       ++asked;
-      free();
       release();
       dispose();
     }},

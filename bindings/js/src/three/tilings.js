@@ -7,36 +7,46 @@ const TILES = {
   atlas_x_yz: ([, ny]) => [[1, 0, 0], [0, 1, 0], [0, ny, 0]],
   slices_xz_y: () => [[1, 0, 0], [0, 0, 1], [0, 1, 0]],
   slices_xy_z: () => [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
+  blocks: ([nx, ny]) => [[0, 0, 1], [0, 0, nx], [0, 0, nx * ny]],
   atlas_yz_x: ([, ny]) => [[0, 1, 0], [1, 0, 0], [ny, 0, 0]],
   slices_yx_z: () => [[0, 1, 0], [1, 0, 0], [0, 0, 1]],
 };
 
-/**
- * Of a texture of square blocks: the steps above, texels from a tile to the next, and those of a tile in front
- * of its core. null: it has no such tiles.
- */
-export function tilingOf({tiling, grid, block, guardBand, padBefore = 0, padAfter = 0}) {
-  const steps = TILES[tiling]?.(grid);
-  if (!steps || block[0] !== block[1] || block[2] !== 1) return null;
-  return {steps, stride: block[0] + 2 * guardBand + padBefore + padAfter, offset: padBefore + guardBand};
-}
+/** The tiles of a texture by its description: a block with its guard band and padding. */
+export class Tiles {
+  #laid;
+  #extent;
+  #texelBytes;
 
-/** The first texel of the tile of a block by its number. */
-export function originOf(desc, block) {
-  const {steps, stride} = tilingOf(desc);
-  const [nx, ny] = desc.grid;
-  const at = [block % nx, Math.floor(block / nx) % ny, Math.floor(block / (nx * ny))];
-  const place = (axis) => steps.reduce((sum, step, i) => sum + step[axis] * at[i], 0);
-  return {x: place(0) * stride, y: place(1) * stride, z: place(2)};
-}
+  constructor({tiling, grid, slots, block, guardBand, padBefore = 0, padAfter = 0, width, height, slices, textureBytes}) {
+    this.#laid = slots ?? grid;
+    this.#extent = [width, height, slices];
+    this.#texelBytes = textureBytes / (width * height * slices);
+    /** As above. */
+    this.steps = TILES[tiling](this.#laid);
+    /** Texels of a tile along each axis. */
+    this.size = block.map((side, axis) => side + (axis < 2 ? 2 * guardBand : 0) + (side > 1 ? padBefore + padAfter : 0));
+    /** Texels of a tile in front of its core. */
+    this.offset = guardBand + padBefore;
+  }
 
-/** Calls body(first, end) with the bytes of each row of a block's tile in the texture. */
-export function forRows(desc, block, body) {
-  const {x, y, z} = originOf(desc, block);
-  const {stride} = tilingOf(desc);
-  const bytes = desc.textureBytes / (desc.width * desc.height * desc.slices);
-  for (let row = 0; row < stride; ++row) {
-    const first = ((z * desc.height + y + row) * desc.width + x) * bytes;
-    body(first, first + stride * bytes);
+  /** The box of texels of a block by its number: {x, y, z, columns, rows, slices}. */
+  of(block) {
+    const [nx, ny] = this.#laid;
+    const at = [block % nx, Math.floor(block / nx) % ny, Math.floor(block / (nx * ny))];
+    const [x, y, z] = this.size.map((side, axis) => side * this.steps.reduce((sum, step, i) => sum + step[axis] * at[i], 0));
+    const [columns, rows, slices] = [x, y, z].map((first, axis) => Math.min(this.size[axis], this.#extent[axis] - first));
+    return {x, y, z, columns, rows, slices};
+  }
+
+  /** Calls body(first, end) with the bytes of each row of a block's tile in the texture. */
+  forRows(block, body) {
+    const {x, y, z, columns, rows, slices} = this.of(block), [width, height] = this.#extent;
+    for (let slice = z; slice < z + slices; ++slice) {
+      for (let row = y; row < y + rows; ++row) {
+        const first = ((slice * height + row) * width + x) * this.#texelBytes;
+        body(first, first + columns * this.#texelBytes);
+      }
+    }
   }
 }
