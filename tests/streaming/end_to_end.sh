@@ -113,11 +113,12 @@ picture_of() {
 culled() { picture_of culled; }
 all() { picture_of all --no-culling; }
 
+# So many updates that a slow client says meanwhile what it sees.
 dumps() {
   local server
-  start dumps "$bin/gi-server" --play "$testdata/tomb-converged" --loop --updates 4 --wait 1 --proofs --port-file dumps.port
+  start dumps "$bin/gi-server" --play "$testdata/tomb-converged" --loop --updates 25 --wait 1 --proofs --port-file dumps.port
   server=$last
-  start viewer "$bin/gi-client" --connect "127.0.0.1:$(port_of dumps)" --scene tomb --size 48x27 --updates 4 --expect-proofs
+  start viewer "$bin/gi-client" --connect "127.0.0.1:$(port_of dumps)" --scene tomb --size 48x27 --updates 25 --expect-proofs
   ends 0 $last viewer
   ends 0 $server dumps
 }

@@ -50,30 +50,27 @@ export async function serve(bodies = {}, folders = [project]) {
   });
 }
 
-/** nginx with bodies by path and the files of the project: {origin, log(), close()}. */
-export async function serveByNginx(bodies, port = 20000 + process.pid % 20000) {
-  const folder = mkdtempSync(join(tmpdir(), 'gicodec-nginx-'));
-  for (const [path, body] of Object.entries(bodies)) writeFileSync(join(folder, path), body);
-  const types = Object.entries(TYPES).map(([ending, type]) => `${type} ${ending.slice(1)};`).join(' ');
+/**
+ * nginx with that text in its block http: {log(), close()}. `folder` becomes its own, and ends with it; `ready`
+ * is a URL that it answers.
+ */
+export async function startNginx(http, folder, ready) {
   writeFileSync(join(folder, 'nginx.conf'), `
     daemon off; master_process off; pid ${folder}/pid; error_log ${folder}/error.log;
     events {}
     http {
-      types { ${types} }
       log_format sent '$status $uri $body_bytes_sent'; access_log ${folder}/access.log sent;
       ${['client_body', 'proxy', 'fastcgi', 'uwsgi', 'scgi'].map((one) => `${one}_temp_path ${folder}/${one};`).join(' ')}
-      server { listen 127.0.0.1:${port}; root ${folder}; location ~ ^/(node_modules|test)/ { root ${project}; } }
+      ${http}
     }`);
   const nginx = spawn('nginx', ['-c', join(folder, 'nginx.conf'), '-p', folder], {stdio: 'inherit'});
-  const origin = `http://127.0.0.1:${port}`;
   for (let tries = 0; ; ++tries) {
-    const there = await fetch(`${origin}/`).then(() => true, () => false);
+    const there = await fetch(ready).then(() => true, ({cause}) => /CERT|SELF_SIGNED/.test(cause?.code));
     if (there) break;
     if (tries === 100 || nginx.exitCode !== null) throw new Error('nginx does not start');
     await new Promise((resolve) => setTimeout(resolve, 50));
   }
   return {
-    origin,
     log: () => readFileSync(join(folder, 'access.log'), 'utf8').trim().split('\n').map((line) => {
       const [status, path, size] = line.split(' ');
       return {status: Number(status), path, size: Number(size)};
@@ -83,6 +80,20 @@ export async function serveByNginx(bodies, port = 20000 + process.pid % 20000) {
       nginx.kill();
     }),
   };
+}
+
+/** A port that is likely free, another one for each `use` of a process. */
+export const portOf = (use) => 20000 + (7 * process.pid + use) % 20000;
+
+/** nginx with bodies by path and the files of the project: {origin, log(), close()}. */
+export async function serveByNginx(bodies) {
+  const folder = mkdtempSync(join(tmpdir(), 'gicodec-nginx-')), port = portOf(0);
+  for (const [path, body] of Object.entries(bodies)) writeFileSync(join(folder, path), body);
+  const types = Object.entries(TYPES).map(([ending, type]) => `${type} ${ending.slice(1)};`).join(' ');
+  const origin = `http://127.0.0.1:${port}`;
+  const nginx = await startNginx(`types { ${types} }
+      server { listen 127.0.0.1:${port}; root ${folder}; location ~ ^/(node_modules|test)/ { root ${project}; } }`, folder, `${origin}/`);
+  return {...nginx, origin};
 }
 
 /** What Chromium has WebGL and WebGPU by where there is no GPU. */

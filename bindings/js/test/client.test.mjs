@@ -1,7 +1,7 @@
 // The client beside a real server: gi-server --listen-web, by the package ws; and what hostile bytes do.
 import assert from 'node:assert/strict';
 import {spawn} from 'node:child_process';
-import {existsSync, mkdtempSync, readFileSync, rmSync} from 'node:fs';
+import {mkdtempSync, readFileSync, rmSync} from 'node:fs';
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {after, before, test} from 'node:test';
@@ -12,6 +12,7 @@ import WebSocket, {WebSocketServer} from 'ws';
 import {open} from 'gicodec';
 import {Client, connect} from 'gicodec/client';
 
+import {giServer} from './gi_server.mjs';
 import {SOURCE, bytes, hashOf, program, randomWords} from './support.mjs';
 
 let folder, server, url, file;
@@ -25,32 +26,16 @@ function run(program, ...options) {
   });
 }
 
-/** A server of `file`; its process and URL. */
-async function serve(name, address = '127.0.0.1:0') {
-  const ports = join(folder, name);
-  rmSync(ports, {force: true});
-  const child = spawn(program('gi-server'),
-      ['--play', file, '--loop', '--listen-web', address, '--insecure-web', '--port-file', ports],
-      {stdio: ['ignore', 'ignore', 'pipe']});
-  let text = '';
-  child.stderr.on('data', (data) => (text += data));
-  for (const end = Date.now() + 30000; !existsSync(ports); await setTimeout(50)) {
-    assert.ok(child.exitCode === null && Date.now() < end, `gi-server: ${text}`);
-  }
-  return [child, `127.0.0.1:${readFileSync(ports, 'utf8').trim()}`];
-}
-
 before(async () => {
   folder = mkdtempSync(join(tmpdir(), 'gicodec-'));
   file = join(folder, 'room.gic');
   await run(program('gi-trace'), '--scene', 'tomb', '--grid', '4x2x4', '--frames', '6', '--fps', '3', '-o', file);
-  let address;
-  [server, address] = await serve('ports');
-  url = `ws://${address}`;
+  server = await giServer(file);
+  url = `ws://${server.address}`;
 });
 
 after(() => {
-  server?.kill();
+  server?.child.kill();
   rmSync(folder, {recursive: true, force: true});
 });
 
@@ -141,7 +126,7 @@ test('recorded sessions have the hashes of C++, C and Python', async () => {
 });
 
 test('it comes back to a server that ended and began again', async () => {
-  let [own, address] = await serve('own');
+  let {child: own, address} = await giServer(file);
   const lost = [];
   let again;
   const done = new Promise((resolve) => (again = resolve));
@@ -156,7 +141,7 @@ test('it comes back to a server that ended and began again', async () => {
   });
   await new Promise((resolve) => own.on('exit', resolve));
   assert.equal(connection.client.state.connected, false);
-  [own] = await serve('own', address);
+  ({child: own} = await giServer(file, {address}));
   await done;
   assert.equal(lost[0], 'the server ends');
   connection.close();

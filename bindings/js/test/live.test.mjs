@@ -1,14 +1,14 @@
 // The light of a server in Chromium, as it changes: each state is one of the server's, on the GPU too.
 import assert from 'node:assert/strict';
 import {createHash} from 'node:crypto';
-import {execFileSync, spawn} from 'node:child_process';
-import {existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
+import {execFileSync} from 'node:child_process';
+import {mkdtempSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {after, before, test} from 'node:test';
-import {setTimeout} from 'node:timers/promises';
 
 import {CHROMIUM_WITH_GPU, launch, pageOf, serve} from './browser_support.mjs';
+import {giServer} from './gi_server.mjs';
 import {bytes, program, randomWords} from './support.mjs';
 import {VolumeEncoder, Writer, volumeOfLayout} from 'gicodec/encoder';
 
@@ -18,18 +18,8 @@ const states = new Map();  // by colour: that of visibility
 
 const digest = (bytes) => createHash('sha256').update(bytes).digest('hex').slice(0, 16);
 
-const start = (address, ...options) => play('room.gic', address, ...options);
-
-async function play(file, address, ...options) {
-  const ports = join(folder, 'ports');
-  rmSync(ports, {force: true});
-  const child = spawn(program('gi-server'), ['--play', join(folder, file), '--loop', '--listen-web', address,
-                                             '--insecure-web', '--proofs', '--rate', `${FPS}`, '--allow-origin', '*', '--port-file', ports, ...options], {stdio: 'ignore'});
-  for (const end = Date.now() + 30000; !existsSync(ports); await setTimeout(50)) {
-    assert.ok(child.exitCode === null && Date.now() < end, 'gi-server does not start');
-  }
-  return [child, `127.0.0.1:${readFileSync(ports, 'utf8').trim()}`];
-}
+const play = (file, {options = [], ...more} = {}) => giServer(join(folder, file), {
+  ...more, options: ['--proofs', '--rate', `${FPS}`, '--allow-origin', '*', ...options]});
 
 before(async () => {
   folder = mkdtempSync(join(tmpdir(), 'gicodec-live-'));
@@ -40,16 +30,15 @@ before(async () => {
     const file = (name) => readFileSync(join(folder, `out/${name}.${String(frame).padStart(4, '0')}.raw`));
     states.set(`${digest(file('color'))} ${digest(file('vis'))}`, frame);
   }
-  let address;
-  [server, address] = await start('127.0.0.1:0');
-  url = `ws://${address}`;
+  server = await play('room.gic');
+  url = `ws://${server.address}`;
   pages = await serve({'/webgl.html': pageOf('live_page'), '/webgpu.html': pageOf('live_page', true)});
   browser = await launch(CHROMIUM_WITH_GPU);
 });
 after(async () => {
   await browser?.close();
   await pages?.close();
-  server?.kill();
+  server?.child.kill();
   rmSync(folder, {recursive: true, force: true});
 });
 
@@ -107,7 +96,7 @@ for (const [layout, type, names] of [
       known.add(names.map((name) => digest(bytes(textures[name]))).join());
     }
     writeFileSync(join(folder, `${layout}.gic`), writer.finish());
-    const [child, address] = await play(`${layout}.gic`, '127.0.0.1:0');
+    const {child, address} = await play(`${layout}.gic`);
     for (const name of ['webgl', 'webgpu']) {
       const page = await open(name);
       await call(page, 'follow', `ws://${address}`, layout, names);
@@ -129,13 +118,13 @@ for (const [layout, type, names] of [
 }
 
 test('it comes back after a server that was killed, and after a context that was lost', async () => {
-  const [child, address] = await start('127.0.0.1:0');
+  const {child, address} = await play('room.gic');
   const page = await open('webgl');
   await call(page, 'start', `ws://${address}`);
   await updates(page, 40);
   child.kill('SIGKILL');
   await page.waitForFunction(() => window.page.events().some(({type}) => type === 'lost'));
-  const [again] = await start(address);
+  const {child: again} = await play('room.gic', {address});
   const before = (await call(page, 'seen')).length;
   await updates(page, before + 40);
   await call(page, 'lose');
@@ -150,7 +139,7 @@ test('it comes back after a server that was killed, and after a context that was
 });
 
 test('a wrong token is said', async () => {
-  const [child, address] = await start('127.0.0.1:0', '--token', 'a'.repeat(32));
+  const {child, address} = await play('room.gic', {options: ['--token', 'a'.repeat(32)]});
   const page = await open('webgl');
   for (const [token, wanted] of [['b'.repeat(32), 'closed'], ['a'.repeat(32), 'connected']]) {
     await call(page, 'start', `ws://${address}`, {token});

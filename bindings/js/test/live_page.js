@@ -71,6 +71,13 @@ window.page = {
         time: state.time, blocks, uploadedBytes, color: await digest(held[0]), vis: await digest(held[1]), gpu: await digest(await shown)}));
     });
   },
+  /** Follows a server, and draws what it has. */
+  draw(url) {
+    live = new GIClient(renderer, url);
+    scene.add(live.object);
+    renderer.setAnimationLoop(() => renderer.render(scene, camera));
+  },
+  render: () => renderer.render(scene, camera),
   seen: () => seen,
   events: () => events,
   statistics: () => live.statistics,

@@ -1,16 +1,17 @@
 // The page of tools/web in Chromium: files dropped on it, files and servers that its address names.
 import assert from 'node:assert/strict';
-import {execFileSync, spawn} from 'node:child_process';
-import {existsSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync} from 'node:fs';
+import {execFileSync} from 'node:child_process';
+import {mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync} from 'node:fs';
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {after, before, test} from 'node:test';
 import {setTimeout} from 'node:timers/promises';
 
-import {CHROMIUM_WITH_GPU, launch, project, serve} from './browser_support.mjs';
+import {CHROMIUM_WITH_GPU, launch, portOf, project, serve, startNginx} from './browser_support.mjs';
+import {giServer} from './gi_server.mjs';
 import {SOURCE, program} from './support.mjs';
 
-let browser, server, folder, live, liveUrl, said = '';
+let browser, server, folder, live, liveUrl;
 
 before(async () => {
   folder = mkdtempSync(join(tmpdir(), 'gicodec-viewer-'));
@@ -24,26 +25,20 @@ before(async () => {
   execFileSync(process.execPath, [join(SOURCE, 'tools/web/build.mjs'), '--npm', join(project, 'node_modules/gicodec'),
                                   '--tools', process.env.GICODEC_JS_TOOLS, '--out', join(folder, 'page')], {stdio: 'inherit'});
   server = await serve({}, [join(folder, 'page'), folder]);
-  live = spawn(program('gi-server'), ['--play', join(folder, 'room.gic'), '--loop', '--listen-web', '127.0.0.1:0', '--insecure-web',
-                                      '--port-file', join(folder, 'ports'), '--web-page', join(folder, 'page'),
-                                      '--allow-origin', server.origin], {stdio: ['ignore', 'ignore', 'pipe']});
-  live.stderr.on('data', (data) => { said += data; });
-  for (const end = Date.now() + 30000; !existsSync(join(folder, 'ports')); await setTimeout(50)) {
-    assert.ok(live.exitCode === null && Date.now() < end, 'gi-server does not start');
-  }
-  liveUrl = `ws://127.0.0.1:${readFileSync(join(folder, 'ports'), 'utf8').trim()}`;
+  live = await giServer(join(folder, 'room.gic'), {options: ['--web-page', join(folder, 'page'), '--allow-origin', server.origin]});
+  liveUrl = `ws://${live.address}`;
   browser = await launch(CHROMIUM_WITH_GPU);
 });
 after(async () => {
   await browser?.close();
   await server?.close();
-  live?.kill();
+  live?.child.kill();
   rmSync(folder, {recursive: true, force: true});
 });
 
 /** The page, and what went wrong on it. */
-async function open(query = '', {width = 680, height = 360, dark = false, url = `${server.origin}/index.html`} = {}) {
-  const page = await browser.newPage();
+async function open(query = '', {width = 680, height = 360, dark = false, url = `${server.origin}/index.html`, by = browser} = {}) {
+  const page = await by.newPage();
   const wrong = [];
   page.on('pageerror', (error) => wrong.push(error.message));
   page.on('console', (message) => message.type() === 'error' && wrong.push(message.text()));
@@ -127,7 +122,7 @@ test('dropped files, and another beside', async () => {
 });
 
 test('a server shows its own page, and refuses those of others', async () => {
-  const [url] = said.match(/http:\/\/127\.0\.0\.1:\d+\/\?server/);
+  const [url] = live.said().match(/http:\/\/127\.0\.0\.1:\d+\/\?server/);
   const {page, wrong} = await open('', {url});
   await page.waitForFunction(() => /updates\d/.test(document.getElementById('facts').textContent), {timeout: 60000});
   assert.equal(await page.evaluate(() => document.getElementById('server').open), false);
@@ -138,10 +133,43 @@ test('a server shows its own page, and refuses those of others', async () => {
   await stranger.waitForFunction(() => document.getElementById('server').open);
   await stranger.click('#server [value=connect]');
   await stranger.waitForFunction(() => !document.getElementById('error').hidden);
-  for (const end = Date.now() + 20000; !said.includes('--allow-origin'); await setTimeout(50)) assert.ok(Date.now() < end, said);
-  assert.ok(said.includes(`--allow-origin ${other.origin} lets its pages in`), said);
+  for (const end = Date.now() + 20000; !live.said().includes('--allow-origin'); await setTimeout(50)) assert.ok(Date.now() < end, live.said());
+  assert.ok(live.said().includes(`--allow-origin ${other.origin} lets its pages in`), live.said());
   await stranger.close();
   await other.close();
+});
+
+test('a server behind nginx, which has the certificate', async () => {
+  const own = mkdtempSync(join(tmpdir(), 'gicodec-proxy-')), name = 'light.example.org', port = portOf(1);
+  const origin = `https://${name}:${port}`;
+  execFileSync('openssl', ['req', '-x509', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:prime256v1', '-nodes', '-days', '2', '-subj', `/CN=${name}`,
+                           '-keyout', 'key.pem', '-out', 'chain.pem'], {cwd: own, stdio: 'pipe'});
+  const behind = await giServer(join(folder, 'room.gic'), {options: ['--web-page', join(folder, 'page'), '--allow-origin', origin, '--max-per-address', '4095']});
+  let conf = readFileSync(join(SOURCE, 'packaging/nginx/gi-server.conf'), 'utf8');
+  for (const [from, to] of [
+    ['listen 443 ssl;', `listen 127.0.0.1:${port} ssl;`], ['listen [::]:443 ssl;', ''], ['http://127.0.0.1:8080', `http://${behind.address}`],
+    ['/etc/letsencrypt/live/light.example.org/fullchain.pem', `${own}/chain.pem`],
+    ['/etc/letsencrypt/live/light.example.org/privkey.pem', `${own}/key.pem`], ['/srv/light/', `${folder}/`]]) {
+    assert.ok(conf.includes(from), from);
+    conf = conf.replaceAll(from, to);
+  }
+  const nginx = await startNginx(`types { text/html html; text/javascript js; text/css css; } ${conf}`, own, `https://127.0.0.1:${port}/health`);
+  const other = await launch([...CHROMIUM_WITH_GPU, `--host-resolver-rules=MAP ${name} 127.0.0.1`, '--ignore-certificate-errors']);
+  try {
+    const {page, wrong} = await open('?server', {url: `${origin}/`, by: other});
+    await page.waitForFunction(() => /updates\d/.test(document.getElementById('facts').textContent), {timeout: 60000});
+    await page.goto(`${origin}/?file=/light/room.gic`);
+    await page.waitForFunction(() => document.getElementById('title').textContent === 'room.gic', {timeout: 60000});
+    assert.equal(await page.evaluate(() => fetch('/metrics').then(({status}) => status)), 404);
+    assert.deepEqual(wrong.filter((one) => !one.includes('404')), []);
+    assert.ok(nginx.log().some(({path, status}) => path === '/light/room.gic' && status === 206));
+    assert.ok(nginx.log().every(({status}) => status < 500));
+    await page.close();
+  } finally {
+    await other.close();
+    behind.child.kill();
+    await nginx.close();
+  }
 });
 
 test('a server: asked about, followed, lost, reconnected', async () => {
@@ -155,7 +183,7 @@ test('a server: asked about, followed, lost, reconnected', async () => {
   await page.waitForFunction(() => [...document.querySelectorAll('#graphs output')].every(({textContent}) => textContent !== ''));
   assert.ok(await lit(page) > 0.3);
   assert.deepEqual(wrong, []);
-  live.kill('SIGKILL');
+  live.child.kill('SIGKILL');
   await page.waitForFunction(() => !document.getElementById('error').hidden, {timeout: 60000});
   assert.match(await text(page, '#error p'), /connection was lost.*\nThe next try/);
   assert.equal(await shown(page, '#again'), true);
