@@ -6,7 +6,7 @@ let renderer, scene, camera;
 
 function begin() {
   renderer = new THREE.WebGLRenderer();
-  renderer.setSize(320, 240);
+  renderer.setSize(64, 48);
   scene = new THREE.Scene();
   scene.add(new THREE.Mesh(new THREE.BoxGeometry(12, 5, 12), new THREE.MeshStandardMaterial({side: THREE.BackSide})));
   camera = new THREE.PerspectiveCamera(60, 4 / 3, 0.1, 100);
@@ -19,6 +19,14 @@ function textureOf(halves, [nx, ny, nz]) {
   Object.assign(texture, {format: THREE.RGBAFormat, type: THREE.HalfFloatType, needsUpdate: true});
   return texture;
 }
+
+/** What a page loads to read a format. */
+const CODE = {
+  json: async () => {},
+  ktx2: () => import('three/addons/loaders/KTX2Loader.js'),
+  meshopt: () => Promise.all([import('three/addons/libs/meshopt_decoder.module.js'), import('three/addons/libs/zstddec.module.js')]),
+  gic: async () => (await Promise.all([import('gicodec/three'), import('three/addons/lighting/LightProbeGridWebGL.js')]))[0],
+};
 
 const DECODERS = {
   /** Whole numbers of 1/4096, 27 for each probe, as an open request for three.js writes them. */
@@ -38,14 +46,13 @@ const DECODERS = {
     return textureOf(halves, size);
   },
   async ktx2(url) {
-    const {KTX2Loader} = await import('three/addons/loaders/KTX2Loader.js');
+    const {KTX2Loader} = await CODE.ktx2();
     return new KTX2Loader().setWorkerLimit(0).detectSupport(renderer).loadAsync(url);
   },
   /** Texels as vertices of 8 bytes (EXT_meshopt_compression), and those by zstd. */
   async meshopt(url, size) {
-    const [{MeshoptDecoder}, {ZSTDDecoder}, packed] = await Promise.all([
-      import('three/addons/libs/meshopt_decoder.module.js'), import('three/addons/libs/zstddec.module.js'),
-      fetch(url).then((response) => response.arrayBuffer())]);
+    const [[{MeshoptDecoder}, {ZSTDDecoder}], packed] = await Promise.all([
+      CODE.meshopt(), fetch(url).then((response) => response.arrayBuffer())]);
     const zstd = new ZSTDDecoder();
     await Promise.all([zstd.init(), MeshoptDecoder.ready]);
     const [nx, ny, nz] = size, count = nx * ny * PARTS * (nz + 2);
@@ -56,12 +63,17 @@ const DECODERS = {
     return textureOf(new Uint16Array(out.buffer), size);
   },
   async gic(url) {
-    const {GILoader} = await import('gicodec/three');
+    const {GILoader} = await CODE.gic();
     return (await new GILoader().detectSupport(renderer).loadAsync(url)).texture;
   },
 };
 
 window.page = {
+  /** Loads the code of a format alone. */
+  async prepare(format) {
+    await CODE[format]();
+  },
+
   /** Milliseconds until the texels are on the GPU, and a hash of them. */
   async load(format, url, size) {
     const start = performance.now();

@@ -214,6 +214,24 @@ TEST(WebPage, FilesAreThoseOfTheFolder) {
     EXPECT_TRUE(ask(path).rest.empty());
   }
   EXPECT_EQ(ask("/", false).head.substr(9, 3), "404");
+  write("assets/a.js.br", "packed");
+  WebFiles packed(folder.string());
+  packed.add("/scene.glb", "glTF");
+  const auto by = [&](const char* path, const char* encodings) {
+    return web_answer({true, path, "", false, {}, encodings}, {}, "", 1, packed);
+  };
+  for (const char* encodings : {"br", "gzip, deflate, br", "br;q=0.5, *"}) {
+    EXPECT_EQ(by("/assets/a.js", encodings).rest, "packed") << encodings;
+    EXPECT_NE(by("/assets/a.js", encodings).head.find("text/javascript"), std::string::npos);
+    EXPECT_NE(by("/assets/a.js", encodings).head.find("Content-Encoding: br\r\n"),
+              std::string::npos);
+    EXPECT_EQ(by("/", encodings).rest, "<html>");
+  }
+  for (const char* encodings : {"", "gzip", "bread", "br;q=0", ",,", " "}) {
+    EXPECT_EQ(by("/assets/a.js", encodings).rest, "x") << encodings;
+    EXPECT_EQ(by("/assets/a.js", encodings).head.find("Content-Encoding"), std::string::npos);
+  }
+  EXPECT_EQ(by("/scene.glb", "br").rest, "glTF");
   std::filesystem::remove_all(folder);
 }
 

@@ -35,5 +35,7 @@ using SecondUvs = std::vector<std::vector<std::array<Vec2, 3>>>;
 void save_gltf(const std::string& path, const Scene& scene, double start, std::uint32_t frames,
                double fps, tools::Existing existing = tools::Existing::refuse,
                const SecondUvs& second = {});
+/// The bytes of such a file of the scene as it stands at `start`.
+[[nodiscard]] std::string gltf_bytes(const Scene& scene, double start);
 
 }  // namespace gicodec::ddgi

@@ -355,4 +355,9 @@ void save_gltf(const std::string& path, const Scene& scene, double start, std::u
   tools::write_file(path, std::as_bytes(std::span(bytes)), existing);
 }
 
+std::string gltf_bytes(const Scene& scene, double start) {
+  const FrameState state = scene.state_at(start);
+  return Exporter(scene, state, {}).run(start, 1, 1);
+}
+
 }  // namespace gicodec::ddgi

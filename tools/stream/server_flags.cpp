@@ -207,6 +207,11 @@ void add_web_flags(tools::Command& app, ServerFlags& o) {
                  "installed, if it is; \"none\": no page")
       ->type_name("FOLDER")
       ->group(group);
+  app.add_flag(
+         "--web-scene", o.web_scene,
+         "The page shows the scene, too, to all who reach the port, whether they know the token "
+         "or not")
+      ->group(group);
   app.add_option("--allow-origin", o.web.origins,
                  "Lets pages of another origin connect, such as https://example.org; \"*\": all "
                  "pages; may be repeated")

@@ -37,6 +37,7 @@ struct ServerFlags {
   std::uint32_t client_kbps = 0;
   std::vector<std::string> ask, add_user;
   WebListen web;
+  bool web_scene = false;
   std::string metrics_token_file;
   bool insecure_web = false;
 };

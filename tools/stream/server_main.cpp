@@ -4,6 +4,7 @@
 #include "common/error_flags.h"
 #include "common/installed.h"
 #include "common/program.h"
+#include "ddgi/gltf.h"
 #include "ddgi/scene_id.h"
 #include "ddgi/scenes.h"
 #include "dump/dump.h"
@@ -81,13 +82,18 @@ void check_memory(const ServerFlags& o, const kinds::Feed& feed) {
 struct Loaded {
   kinds::Feed feed;
   std::unique_ptr<Views> views;
+  std::string gltf;  ///< the scene for the page, if it is asked for
 };
 
 Loaded load(const ServerFlags& o) {
-  Loaded loaded{make_feed(o), nullptr};
+  Loaded loaded{make_feed(o), nullptr, {}};
   const bool culls = std::ranges::any_of(loaded.feed.volumes, kinds::is_culled) && !o.no_culling;
-  if (!culls && !loaded.feed.played) return loaded;
+  if (!culls && !loaded.feed.played && !o.web_scene) return loaded;
   auto scene = scene_of(o, loaded.feed);
+  if (o.web_scene && !scene)
+    fail(Exit::usage, "--web-scene: {} does not name a built-in scene; --scene or --gltf does",
+         o.play);
+  if (o.web_scene) loaded.gltf = ddgi::gltf_bytes(*scene, o.service.start);
   if (!scene || !culls) return loaded;
   loaded.views = std::make_unique<Views>(*std::move(scene), o.view_samples, o.view_margin);
   return loaded;
@@ -204,9 +210,10 @@ void summarise_nothing(const ServerFlags& o) {
 void take_addresses(ServerFlags& o) {
   if (o.listen_web.empty()) {
     if (!o.web.certificate.empty() || !o.web.key.empty() || o.insecure_web ||
-        !o.metrics_token_file.empty() || !o.web.page.empty() || !o.web.origins.empty())
+        !o.metrics_token_file.empty() || !o.web.page.empty() || o.web_scene ||
+        !o.web.origins.empty())
       fail(Exit::usage,
-           "--certificate, --key, --insecure-web, --web-page, --allow-origin and "
+           "--certificate, --key, --insecure-web, --web-page, --web-scene, --allow-origin and "
            "--metrics-token-file are for --listen-web");
     if (o.listen.empty()) o.listen = "127.0.0.1:0";
   }
@@ -232,6 +239,8 @@ void take_addresses(ServerFlags& o) {
     o.web.metrics_token = read_token({"", o.metrics_token_file}).text;
   if (o.web.page.empty()) o.web.page = tools::installed_folder("web");
   if (o.web.page == "none") o.web.page.clear();
+  if (o.web.page.empty() && o.web_scene)
+    fail(Exit::usage, "--web-scene is for a page, and there is none; --web-page names its folder");
   o.service.web = o.web;
 }
 
@@ -302,7 +311,8 @@ Exit run(ServerFlags& o) {
     summarise_nothing(o);
     end_now(Exit::ok);
   }
-  auto& [feed, views] = *loaded;
+  auto& [feed, views, gltf] = *loaded;
+  if (o.service.web) o.service.web->scene = std::move(gltf);
   if (!o.play.empty()) check_memory(o, feed);
   o.server.scene = feed.scene;
   LossyBackends lossy;

@@ -94,8 +94,9 @@ void Service::begin() {
     const Address at{address->host, ports.front(), address->via};
     where += (where.empty() ? "" : " and ") + to_string(at);
     if (at.via != Via::enet && !options_.web->page.empty()) {
-      page = fmt::format("http{}://{}/?server", at.via == Via::web ? "s" : "",
-                         to_string(Address{at.host, at.port, Via::enet}));
+      page = fmt::format("http{}://{}/?server{}", at.via == Via::web ? "s" : "",
+                         to_string(Address{at.host, at.port, Via::enet}),
+                         options_.web->scene.empty() ? "" : "&scene=scene.glb");
     }
     ports.erase(ports.begin());
   }

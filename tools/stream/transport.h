@@ -94,6 +94,7 @@ struct WebListen {
   std::string certificate, key;  ///< PEM files; empty: no encryption
   std::string metrics_token;     ///< lets a reader see the metrics; empty: only this machine may
   std::string page = {};         ///< folder of a page that it serves; empty: none
+  std::string scene = {};        ///< a glTF file that the page finds as scene.glb; empty: none
   std::vector<std::string> origins = {};  ///< whose pages may connect, besides its own; "*": all
 };
 

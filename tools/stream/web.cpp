@@ -29,6 +29,7 @@ Web::Web(const WebListen& listen, TlsContext certificate, const NetOptions& opti
     : state_(std::make_unique<State>(options)) {
   state_->listen = listen;
   if (!listen.page.empty()) state_->files = WebFiles(listen.page);
+  if (!listen.scene.empty()) state_->files.add("/scene.glb", listen.scene);
   allow_files(options.links + HalfOpen::kMax + kFiles);
   state_->listener = listen_tcp(listen.address);
   state_->loop = std::make_unique<WebLoop>(*state_, std::move(certificate));

@@ -194,9 +194,12 @@ int WebLoop::Loop::answer(WebLink* link, lws* wsi) {
     const std::lock_guard lock(state.mutex);
     what = state.shown;
   }
-  const WebRequest request{
-      lws_hdr_total_length(wsi, WSI_TOKEN_GET_URI) > 0, header(wsi, WSI_TOKEN_GET_URI),
-      header(wsi, WSI_TOKEN_HTTP_AUTHORIZATION), link->peer.loopback, header(wsi, WSI_TOKEN_HOST)};
+  const WebRequest request{lws_hdr_total_length(wsi, WSI_TOKEN_GET_URI) > 0,
+                           header(wsi, WSI_TOKEN_GET_URI),
+                           header(wsi, WSI_TOKEN_HTTP_AUTHORIZATION),
+                           link->peer.loopback,
+                           header(wsi, WSI_TOKEN_HOST),
+                           header(wsi, WSI_TOKEN_HTTP_ACCEPT_ENCODING)};
   link->page = web_answer(request, what, state.listen.metrics_token, now(), state.files);
   link->answering = true;
   lws_callback_on_writable(wsi);

@@ -40,12 +40,24 @@ const char* type_of(std::string_view path) {
   return found == kTypes.end() ? "application/octet-stream" : found->second;
 }
 
-std::string head_of(const char* status, std::string_view type, std::size_t bytes) {
+std::string head_of(const char* status, std::string_view type, std::size_t bytes,
+                    bool brotli = false) {
   return fmt::format(
       "HTTP/1.1 {}\r\nContent-Type: {}\r\nContent-Length: {}\r\nCache-Control: no-store\r\n"
       "Content-Security-Policy: {}\r\nX-Content-Type-Options: nosniff\r\n"
-      "Referrer-Policy: no-referrer\r\nConnection: close\r\n\r\n",
-      status, type, bytes, kPolicy);
+      "Referrer-Policy: no-referrer\r\nVary: Accept-Encoding\r\n{}Connection: close\r\n\r\n",
+      status, type, bytes, kPolicy, brotli ? "Content-Encoding: br\r\n" : "");
+}
+
+/// Whether a list such as "gzip, deflate, br;q=0.5" has Brotli.
+bool takes_brotli(std::string_view list) noexcept {
+  while (!list.empty()) {
+    std::string_view one = list.substr(0, list.find(','));
+    list.remove_prefix(std::min(list.size(), one.size() + 1));
+    one.remove_prefix(std::min(one.size(), one.find_first_not_of(' ')));
+    if (one == "br" || (one.starts_with("br;") && !one.ends_with("q=0"))) return true;
+  }
+  return false;
 }
 
 WebAnswer page(const char* status, const char* type, const std::string& body) {
@@ -82,8 +94,9 @@ WebFiles::WebFiles(const std::string& folder) {
       }
       const std::string path = tools::path_text(entry.path());
       std::string name = "/" + tools::path_text(entry.path().lexically_relative(top));
-      File& file = files_[std::move(name)] = {type_of(path), tools::file_contents(path)};
-      if (file.bytes.empty()) tools::fail(tools::Exit::io, "{}: is empty", path);
+      std::string contents = tools::file_contents(path);
+      if (contents.empty()) tools::fail(tools::Exit::io, "{}: is empty", path);
+      add(std::move(name), std::move(contents));
     }
   } catch (const fs::filesystem_error& error) {
     tools::fail(tools::Exit::io, "{}: cannot be read: {}", folder, error.code().message());
@@ -92,7 +105,17 @@ WebFiles::WebFiles(const std::string& folder) {
   if (index == files_.end()) {
     tools::fail(tools::Exit::io, "{}: has no index.html; give the folder of a page", folder);
   }
+  // What has no original stays a file of its own.
+  for (auto& [name, file] : files_) {
+    const auto packed = files_.find(name + ".br");
+    if (packed != files_.end()) file.brotli = packed->second.bytes;
+  }
   files_["/"] = index->second;
+}
+
+void WebFiles::add(std::string path, std::string bytes) {
+  const char* const type = type_of(path);
+  files_[std::move(path)] = {type, std::move(bytes)};
 }
 
 const WebFiles::File* WebFiles::find(std::string_view path) const {
@@ -111,7 +134,9 @@ WebAnswer web_answer(const WebRequest& request, const Shown& shown,
     return page("200 OK", "text/plain; version=0.0.4", shown.metrics);
   const WebFiles::File* const file = request.get ? files.find(request.path) : nullptr;
   if (file == nullptr) return page("404 Not Found", "text/plain", "not found\n");
-  return {head_of("200 OK", file->type, file->bytes.size()), file->bytes};
+  const bool brotli = !file->brotli.empty() && takes_brotli(request.encodings);
+  const std::string& bytes = brotli ? file->brotli : file->bytes;
+  return {head_of("200 OK", file->type, bytes.size(), brotli), bytes};
 }
 
 bool may_connect(std::string_view origin, std::string_view host,

@@ -12,8 +12,9 @@ namespace gicodec::streaming {
 struct WebRequest {
   bool get = false;  ///< its method is GET
   std::string path, authorization;
-  bool loopback = false;  ///< it comes from this machine
-  std::string host = {};  ///< by which name it was asked for
+  bool loopback = false;       ///< it comes from this machine
+  std::string host = {};       ///< by which name it was asked for
+  std::string encodings = {};  ///< that the browser takes
 };
 
 /// The metrics that the server has shown last, and when.
@@ -22,8 +23,8 @@ struct Shown {
   double at = 0;
 };
 
-/// The files of a folder by their path in it, which begins with a slash; "/" is index.html. Read
-/// once: no request reaches the folder.
+/// The files of a folder by their path in it, which begins with a slash; "/" is index.html. Beside
+/// a file NAME may stand NAME.br, the same by Brotli. Read once: no request reaches the folder.
 class WebFiles {
  public:
   WebFiles() = default;
@@ -32,8 +33,9 @@ class WebFiles {
   explicit WebFiles(const std::string& folder);
 
   struct File {
-    std::string type, bytes;
+    std::string type, bytes, brotli = {};
   };
+  void add(std::string path, std::string bytes);
   /// nullptr if there is none of that path.
   [[nodiscard]] const File* find(std::string_view path) const;
 

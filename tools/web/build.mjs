@@ -1,11 +1,13 @@
 // Builds the page: node build.mjs [--npm build/npm] [--tools build/js] [--out build/web]. `out` gets the page as
-// a server shows it (by Vite), and viewer.html, one file into which gicodec view puts containers.
+// a server shows it (by Vite), its scripts also by Brotli, and viewer.html, one file into which gicodec view puts
+// containers.
 import {createHash} from 'node:crypto';
-import {mkdirSync, readFileSync, writeFileSync} from 'node:fs';
+import {mkdirSync, readFileSync, readdirSync, writeFileSync} from 'node:fs';
 import {createRequire} from 'node:module';
 import {dirname, join, resolve} from 'node:path';
 import {fileURLToPath, pathToFileURL} from 'node:url';
 import {parseArgs} from 'node:util';
+import {brotliCompressSync} from 'node:zlib';
 
 const here = dirname(fileURLToPath(import.meta.url));
 const top = join(here, '../..');
@@ -33,6 +35,11 @@ await build({
   plugins: [{name: 'packages', enforce: 'pre', resolveId: fileOf}],
   build: {outDir: out, emptyOutDir: true, modulePreload: {polyfill: false}, assetsInlineLimit: 0, chunkSizeWarningLimit: 4000},
 });
+
+// What gi-server sends to browsers that take it.
+for (const name of readdirSync(out, {recursive: true}).map(String).filter((one) => /\.(js|css)$/.test(one))) {
+  writeFileSync(join(out, `${name}.br`), brotliCompressSync(readFileSync(join(out, name))));
+}
 
 // What a page without a server and without WebGPU has no use for.
 const LEFT_OUT = /(^three\/(webgpu|tsl)$|lighting\/LightProbeGrid\.js$|\/(client|three_nodes|encoder)\.js$)/;

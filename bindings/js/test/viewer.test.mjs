@@ -144,7 +144,7 @@ test('a server behind nginx, which has the certificate', async () => {
   const origin = `https://${name}:${port}`;
   execFileSync('openssl', ['req', '-x509', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:prime256v1', '-nodes', '-days', '2', '-subj', `/CN=${name}`,
                            '-keyout', 'key.pem', '-out', 'chain.pem'], {cwd: own, stdio: 'pipe'});
-  const behind = await giServer(join(folder, 'room.gic'), {options: ['--web-page', join(folder, 'page'), '--allow-origin', origin, '--max-per-address', '4095']});
+  const behind = await giServer(join(folder, 'room.gic'), {options: ['--web-page', join(folder, 'page'), '--web-scene', '--allow-origin', origin, '--max-per-address', '4095']});
   let conf = readFileSync(join(SOURCE, 'packaging/nginx/gi-server.conf'), 'utf8');
   for (const [from, to] of [
     ['listen 443 ssl;', `listen 127.0.0.1:${port} ssl;`], ['listen [::]:443 ssl;', ''], ['http://127.0.0.1:8080', `http://${behind.address}`],
@@ -156,10 +156,15 @@ test('a server behind nginx, which has the certificate', async () => {
   const nginx = await startNginx(`types { text/html html; text/javascript js; text/css css; } ${conf}`, own, `https://127.0.0.1:${port}/health`);
   const other = await launch([...CHROMIUM_WITH_GPU, `--host-resolver-rules=MAP ${name} 127.0.0.1`, '--ignore-certificate-errors']);
   try {
-    const {page, wrong} = await open('?server', {url: `${origin}/`, by: other});
+    const {page, wrong} = await open(/\/(\?server&scene=scene\.glb)/.exec(behind.said())[1], {url: `${origin}/`, by: other});
     await page.waitForFunction(() => /updates\d/.test(document.getElementById('facts').textContent), {timeout: 60000});
     await page.goto(`${origin}/?file=/light/room.gic`);
     await page.waitForFunction(() => document.getElementById('title').textContent === 'room.gic', {timeout: 60000});
+    const {encoding, asked} = await page.evaluate(async () => {
+      const script = document.querySelector('script[src]').src, answer = await fetch(script);
+      return {encoding: answer.headers.get('content-encoding'), asked: (await fetch('/scene.glb')).status};
+    });
+    assert.deepEqual([encoding, asked], ['br', 200]);
     assert.equal(await page.evaluate(() => fetch('/metrics').then(({status}) => status)), 404);
     assert.deepEqual(wrong.filter((one) => !one.includes('404')), []);
     assert.ok(nginx.log().some(({path, status}) => path === '/light/room.gic' && status === 206));

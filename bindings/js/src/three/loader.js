@@ -1,6 +1,6 @@
 // GILoader: containers as objects of a scene.
 import {Group, Loader} from 'three';
-import {fetchRanges, open, useWorkers} from 'gicodec:entry/index';
+import {fetchRanges, open, ready, useWorkers} from 'gicodec:entry/index';
 
 import {findShown, useVolumes} from './shown.js';
 import {States, addStates} from './states.js';
@@ -73,6 +73,7 @@ export class GILoader extends Loader {
     const stop = () => own.abort(all.reason);
     all.addEventListener('abort', stop, {once: true});
     let loaded = 0, made = false;
+    ready.then(() => {}, () => {});  // compiles while bytes are on their way
     const tell = (bytes, total) => {
       loaded += bytes;
       if (!made) onProgress(new ProgressEvent('progress', {lengthComputable: total > 0, loaded, total}));
@@ -132,6 +133,7 @@ export class GILoader extends Loader {
     }
     const states = new States(player, frames, shown.flatMap(({textures}) => textures));
     const release = states.use();
+    states.frame(states.all[0].frame).catch(() => {});  // decodes while what shows it is loaded
     const objects = [];
     try {
       await useVolumes(this.#renderer);

@@ -17,7 +17,7 @@ export async function captureLightProbeGrid(renderer, grid) {
  * The bytes of a container with a grid as it is now, or with what captureLightProbeGrid() returned, several
  * times, as its states. `states`: {time, name} of each. `half` turns float to half, which loses bits.
  */
-export async function saveLightProbeGrid(renderer, grid, {states = [], half = false, name = 'grid', preset = 'strong'} = {}) {
+export async function saveLightProbeGrid(renderer, grid, {states = [], half = false, name = 'grid', preset = 'fast'} = {}) {
   const all = Array.isArray(grid) ? grid : [await captureLightProbeGrid(renderer, grid)];
   const [{resolution, bounds, texels: {constructor: Type}}] = all;
   if (all.some((one) => `${one.resolution}` !== `${resolution}` || one.texels.constructor !== Type)) {
