@@ -7,7 +7,7 @@ import {join} from 'node:path';
 import {after, before, describe, test} from 'node:test';
 
 import {CHROMIUM_WITH_GPU, launch, pageOf, serve, serveByNginx} from './browser_support.mjs';
-import {bytes, program, randomWords} from './support.mjs';
+import {bytes, golden, program, randomWords} from './support.mjs';
 
 let browser, server;
 
@@ -16,6 +16,7 @@ before(async () => {
     '/webgl.html': pageOf('three_page'),
     '/webgpu.html': pageOf('three_page', true),
     '/text.gic': 'no container',
+    '/newer.gic': golden('bad_major.gic'),
   });
   browser = await launch(CHROMIUM_WITH_GPU);
 });
@@ -117,6 +118,7 @@ for (const [name, type] of [['webgl', 'Float32Array'], ['webgpu', 'Uint16Array']
       assert.match(await call('failure', '/points.gic'), /no texture that a GPU can have: it has volumes of kind textures/);
       assert.match(await call('failure', '/absent.gic'), /the server answers 404/);
       assert.match(await call('failure', '/text.gic'), /GicodecError: .*not/i);
+      assert.match(await call('failure', '/newer.gic'), /the container has version 3\.0, and gicodec \d.* reads version 1: take a newer gicodec/);
       const cut = decode(made.file);
       server.put('/cut.gic', cut.subarray(0, cut.length - 40));
       assert.equal(await call('failure', '/cut.gic'), null);  // all states are there
