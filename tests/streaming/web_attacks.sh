@@ -106,5 +106,17 @@ slow() {
   kill $unread
 }
 
-beside rules handshakes frames crowd slow
+# A proxy says for whom it comes; what a client says itself stands before that.
+proxy() {
+  local server
+  server proxy --listen-web 127.0.0.1:0 --insecure-web --behind-proxy --max-per-address 2
+  server=$last
+  start forwarded python3 "$here/web_peer.py" forwarded ws://127.0.0.1:$port
+  ends 0 $last forwarded
+  wait_for proxy "turned away, the last one 203.0.113.7:[0-9]"
+  kill -TERM $server
+  ends 0 $server proxy
+}
+
+beside rules handshakes frames crowd slow proxy
 finish

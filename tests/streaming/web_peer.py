@@ -136,7 +136,7 @@ def half_tls(source):
 
 def half_http(source):
     link = connect(url, source)
-    link.sendall(UPGRADE.format(path="/").encode()[:60])
+    link.sendall(UPGRADE.format(path="/", more="").encode()[:60])
     return link
 
 
@@ -177,13 +177,32 @@ def secrets(peer):
     return True
 
 
+def forwarded(_):
+    """Connections through a proxy of a server that takes two of an address."""
+    def comes(address):
+        try:
+            return Peer(url, more=f"X-Forwarded-For: {address}\r\n")
+        except OSError:
+            return None
+    kept = [comes("203.0.113.7"), comes("198.51.100.1, 203.0.113.7")]
+    kept += [comes("203.0.113.8"), comes("2001:db8::1"), comes("no address")]
+    refused = [comes("203.0.113.7"), comes("203.0.113.8,203.0.113.7")]
+    kept.pop(0).link.close()  # makes room
+    for _ in range(100):
+        again = comes("203.0.113.7")
+        if again is not None:
+            break
+        time.sleep(0.1)
+    return all(kept) and not any(refused) and again is not None
+
+
 KINDS = {one.__name__: one for one in (text, claims, oversized, crumbs, empties, pings, opcode, empty,
                                        unread, secrets)}
 HELD = {one.__name__: one for one in (silent, half_tls, half_http)}
 
 kind, url = sys.argv[1], sys.argv[2]
-if kind in ("elsewhere", "crowd"):
-    good = {"elsewhere": elsewhere, "crowd": crowd}[kind](None)
+if kind in ("elsewhere", "crowd", "forwarded"):
+    good = {"elsewhere": elsewhere, "crowd": crowd, "forwarded": forwarded}[kind](None)
 elif kind in HELD:
     held(HELD[kind])
 else:

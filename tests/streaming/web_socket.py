@@ -11,7 +11,7 @@ REASONS = ["left", "version", "token", "full", "malformed", "too large", "flood"
            "exhausted", "unicast full"]
 UPGRADE = ("GET {path} HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\n"
            "Connection: Upgrade\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n"
-           "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Protocol: gicodec\r\n\r\n")
+           "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Protocol: gicodec\r\n{more}\r\n")
 
 
 def connect(url, source="127.0.0.1"):
@@ -28,10 +28,10 @@ def connect(url, source="127.0.0.1"):
 
 
 class Peer:
-    def __init__(self, url, path="/"):
+    def __init__(self, url, path="/", more=""):
         self.link = connect(url)
         self.buffer = b""
-        self.link.sendall(UPGRADE.format(path=path).encode())
+        self.link.sendall(UPGRADE.format(path=path, more=more).encode())
         while b"\r\n\r\n" not in self.buffer:
             self.buffer += self.more()
         head, self.buffer = self.buffer.split(b"\r\n\r\n", 1)

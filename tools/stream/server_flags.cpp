@@ -219,6 +219,11 @@ void add_web_flags(tools::Command& app, ServerFlags& o) {
       ->group(group)
       ->expected(1)
       ->take_all();
+  app.add_flag(
+         "--behind-proxy", o.web.behind_proxy,
+         "A proxy on this machine stands in front of --listen-web: limits of an address count "
+         "the last one of its X-Forwarded-For")
+      ->group(group);
   app.add_option("--metrics-token-file", o.metrics_token_file,
                  "Show /metrics to those who know the first line of this file as a bearer token; "
                  "else to this machine alone")

@@ -211,10 +211,10 @@ void take_addresses(ServerFlags& o) {
   if (o.listen_web.empty()) {
     if (!o.web.certificate.empty() || !o.web.key.empty() || o.insecure_web ||
         !o.metrics_token_file.empty() || !o.web.page.empty() || o.web_scene ||
-        !o.web.origins.empty())
+        !o.web.origins.empty() || o.web.behind_proxy)
       fail(Exit::usage,
-           "--certificate, --key, --insecure-web, --web-page, --web-scene, --allow-origin and "
-           "--metrics-token-file are for --listen-web");
+           "--certificate, --key, --insecure-web, --web-page, --web-scene, --allow-origin, "
+           "--behind-proxy and --metrics-token-file are for --listen-web");
     if (o.listen.empty()) o.listen = "127.0.0.1:0";
   }
   if (!o.listen.empty()) o.service.listen = parse_address(o.listen, "--listen");

@@ -93,6 +93,21 @@ std::uint16_t port_of(int descriptor) {
                                   : ntohs(reinterpret_cast<const sockaddr_in&>(at).sin_port);
 }
 
+TcpPeer peer_from_string(const std::string& text, std::uint16_t port) {
+  sockaddr_storage from{};
+  auto& v4 = reinterpret_cast<sockaddr_in&>(from);
+  if (inet_pton(AF_INET, text.c_str(), &v4.sin_addr) == 1) {
+    v4.sin_family = AF_INET;
+    v4.sin_port = htons(port);
+    return peer_of(from);
+  }
+  auto& v6 = reinterpret_cast<sockaddr_in6&>(from);
+  if (inet_pton(AF_INET6, text.c_str(), &v6.sin6_addr) != 1) return {};
+  v6.sin6_family = AF_INET6;
+  v6.sin6_port = htons(port);
+  return peer_of(from);
+}
+
 int accept_tcp(int descriptor, TcpPeer& peer) {
   sockaddr_storage from{};
   socklen_t size = sizeof from;

@@ -20,6 +20,8 @@ struct TcpPeer {
   std::string host;
   bool loopback = false;
 };
+/// The peer of a text that is nothing but an address, with that port; no host for any other text.
+[[nodiscard]] TcpPeer peer_from_string(const std::string& text, std::uint16_t port);
 /// Accepts a waiting connection, and sets its peer; -1 if there is none. Without memory for `peer`
 /// it closes the connection and throws std::bad_alloc.
 [[nodiscard]] int accept_tcp(int descriptor, TcpPeer& peer);

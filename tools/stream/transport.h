@@ -96,6 +96,8 @@ struct WebListen {
   std::string page = {};         ///< folder of a page that it serves; empty: none
   std::string scene = {};        ///< a glTF file that the page finds as scene.glb; empty: none
   std::vector<std::string> origins = {};  ///< whose pages may connect, besides its own; "*": all
+  /// Connections from this machine come through a proxy, which says in X-Forwarded-For for whom.
+  bool behind_proxy = false;
 };
 
 }  // namespace gicodec::streaming

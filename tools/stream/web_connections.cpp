@@ -64,7 +64,8 @@ WebLink* WebLoop::Loop::enter(const TcpPeer& peer) {
     made->accepted = true;
     made->created = now();
     std::size_t& of_host = hosts[peer.host];
-    if (of_host >= state.options.links_per_address) {
+    const bool proxy = state.listen.behind_proxy && peer.loopback;  // of many addresses
+    if (of_host >= state.options.links_per_address && !proxy) {
       WebLink* const crowded = half_open.take(peer.host);
       if (crowded == nullptr) return nullptr;
       kill(crowded);
@@ -79,6 +80,33 @@ WebLink* WebLoop::Loop::enter(const TcpPeer& peer) {
     const std::lock_guard lock(state.mutex);
     state.forget(link);
     return nullptr;
+  }
+}
+
+/// Counts a connection by the address for which its proxy says that it comes. False if that has too
+/// many, or memory runs out.
+bool WebLoop::Loop::count_anew(WebLink* link, const std::string& forwarded) {
+  const std::size_t last = forwarded.find_last_of(", ");
+  const std::size_t colon = link->peer.address.rfind(':');
+  try {
+    TcpPeer peer = peer_from_string(
+        forwarded.substr(last == std::string::npos ? 0 : last + 1),
+        static_cast<std::uint16_t>(std::stoul(link->peer.address.substr(colon + 1))));
+    if (peer.host.empty()) return true;  // it says none
+    std::size_t& of_host = hosts[peer.host];
+    if (of_host >= state.options.links_per_address) {
+      const std::lock_guard lock(state.mutex);
+      ++state.turned_away.count;
+      state.turned_away.last = std::move(peer.address);
+      return false;
+    }
+    ++of_host;
+    leave(link);
+    link->peer = std::move(peer);
+    return true;
+  } catch (const std::bad_alloc&) {
+    std::erase_if(hosts, [](const auto& host) { return host.second == 0; });
+    return false;
   }
 }
 
@@ -194,10 +222,11 @@ int WebLoop::Loop::answer(WebLink* link, lws* wsi) {
     const std::lock_guard lock(state.mutex);
     what = state.shown;
   }
+  const bool here = link->peer.loopback && !state.listen.behind_proxy;
   const WebRequest request{lws_hdr_total_length(wsi, WSI_TOKEN_GET_URI) > 0,
                            header(wsi, WSI_TOKEN_GET_URI),
                            header(wsi, WSI_TOKEN_HTTP_AUTHORIZATION),
-                           link->peer.loopback,
+                           here,
                            header(wsi, WSI_TOKEN_HOST),
                            header(wsi, WSI_TOKEN_HTTP_ACCEPT_ENCODING)};
   link->page = web_answer(request, what, state.listen.metrics_token, now(), state.files);
@@ -224,10 +253,13 @@ int WebLoop::Loop::write_page(WebLink* link, lws* wsi) {
   return 0;
 }
 
-int WebLoop::Loop::admit(lws* wsi) {
+int WebLoop::Loop::admit(WebLink* link, lws* wsi) {
   std::string origin = header(wsi, WSI_TOKEN_ORIGIN);
   const bool secure = state.listen.address.via == Via::web;
-  if (may_connect(origin, header(wsi, WSI_TOKEN_HOST), state.listen.origins, secure)) return 0;
+  if (may_connect(origin, header(wsi, WSI_TOKEN_HOST), state.listen.origins, secure)) {
+    if (!state.listen.behind_proxy || !link->peer.loopback) return 0;
+    return count_anew(link, header(wsi, WSI_TOKEN_X_FORWARDED_FOR)) ? 0 : -1;
+  }
   const std::lock_guard lock(state.mutex);
   ++state.turned_away.origins;
   state.turned_away.last_origin = std::move(origin);

@@ -145,7 +145,7 @@ int WebLoop::Loop::take(lws* wsi, lws_callback_reasons reason, void* user, void*
     case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION:
       return header(wsi, WSI_TOKEN_GET_URI) == "/" &&
                      lws_hdr_total_length(wsi, WSI_TOKEN_PROTOCOL) > 0
-                 ? admit(wsi)
+                 ? admit(link, wsi)
                  : -1;
     case LWS_CALLBACK_CLIENT_APPEND_HANDSHAKE_HEADER:  // Nothing was sent yet.
       if (link->server.via != Via::plain_web || peer_is_here(lws_get_socket_fd(wsi))) return 0;

@@ -50,7 +50,8 @@ struct WebLoop::Loop {
   /// Sends the next bytes of an answer; the last ones end the connection.
   int write_page(WebLink* link, lws* wsi);
   /// 0 if a page may connect from where it is, else -1.
-  int admit(lws* wsi);
+  int admit(WebLink* link, lws* wsi);
+  bool count_anew(WebLink* link, const std::string& forwarded);
   void look_after_all();
   /// Ends the connection soon. Does nothing for a link that libwebsockets does not have.
   static void kill(WebLink* link) {

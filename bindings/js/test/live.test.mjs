@@ -133,7 +133,9 @@ test('it comes back after a server that was killed, and after a context that was
   const [first, then] = [fromWhole(seen.slice(0, before)), fromWhole(seen.slice(before))];
   for (const {color, vis} of [...first, ...then]) assert.ok(states.has(`${color} ${vis}`));
   for (const {color, gpu} of then.slice(-3)) assert.equal(gpu, color);
+  const held = await call(page, 'textures');
   await call(page, 'stop');
+  assert.equal(await call(page, 'textures'), held - 3);  // colour, visibility, activity
   again.kill();
   await page.close();
 });

@@ -144,7 +144,7 @@ test('a server behind nginx, which has the certificate', async () => {
   const origin = `https://${name}:${port}`;
   execFileSync('openssl', ['req', '-x509', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:prime256v1', '-nodes', '-days', '2', '-subj', `/CN=${name}`,
                            '-keyout', 'key.pem', '-out', 'chain.pem'], {cwd: own, stdio: 'pipe'});
-  const behind = await giServer(join(folder, 'room.gic'), {options: ['--web-page', join(folder, 'page'), '--web-scene', '--allow-origin', origin, '--max-per-address', '4095']});
+  const behind = await giServer(join(folder, 'room.gic'), {options: ['--web-page', join(folder, 'page'), '--web-scene', '--allow-origin', origin, '--behind-proxy']});
   let conf = readFileSync(join(SOURCE, 'packaging/nginx/gi-server.conf'), 'utf8');
   for (const [from, to] of [
     ['listen 443 ssl;', `listen 127.0.0.1:${port} ssl;`], ['listen [::]:443 ssl;', ''], ['http://127.0.0.1:8080', `http://${behind.address}`],
