@@ -227,7 +227,8 @@ TEST(WebPage, FilesAreThoseOfTheFolder) {
               std::string::npos);
     EXPECT_EQ(by("/", encodings).rest, "<html>");
   }
-  for (const char* encodings : {"", "gzip", "bread", "br;q=0", ",,", " "}) {
+  for (const char* encodings :
+       {"", "gzip", "bread", "br;q=0", "br; q=0.000", "br;q=0.0, gzip", ",,", " "}) {
     EXPECT_EQ(by("/assets/a.js", encodings).rest, "x") << encodings;
     EXPECT_EQ(by("/assets/a.js", encodings).head.find("Content-Encoding"), std::string::npos);
   }

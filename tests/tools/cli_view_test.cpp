@@ -58,7 +58,7 @@ std::string between(const std::string& text, std::string_view begin, std::string
 }
 
 TEST_F(CliView, PutsFilesInsideAPage) {
-  for (const std::string_view scene : {"g", "gl", "glTF"}) {  // each end of base64
+  for (const std::string_view scene : {"glTF", "glTF2", "glTF20"}) {  // each end of base64
     write("room.glb", scene);
     program_.succeed({"view", "x.gic", "--scene", "room.glb", "--page", "page.html", "--export",
                       "out.html", "--overwrite"});
@@ -98,6 +98,7 @@ TEST_F(CliView, RefusesWhatItCannotShow) {
   refuse(Exit::io, Arguments{"x.gic", "--page", "in"} + to, {"in: is a folder"});
   refuse(Exit::io, Arguments{"x.gic", "--scene", "in"} + to + page, {"in: "});
   refuse(Exit::io, Arguments{"x.gic", "--scene", "absent.glb"} + to + page, {"absent.glb"});
+  refuse(Exit::bad_input, Arguments{"x.gic", "--scene", "x.gic"} + to + page, {"glTF", "gi-trace"});
   refuse(Exit::usage, Arguments{"x.gic", "--export", "x.gic", "--overwrite"} + page, {"x.gic"});
   write("there.html", "mine");
   refuse(Exit::io, Arguments{"x.gic", "--export", "there.html"} + page,

@@ -24,8 +24,9 @@ namespace {
 
 constexpr const char* kViewFooter =
     "The page has everything inside, asks no server for anything, and works from a disk. It shows\n"
-    "probes with irradiance and visibility, and grids of three.js, and lights the scene of "
-    "--scene.\n"
+    "probes with irradiance and visibility, grids of three.js and Bevy's ambient cubes, and "
+    "lights\n"
+    "the scene of --scene by them.\n"
     "\n"
     "Examples:\n"
     "  gicodec view villa.gic\n"
@@ -70,8 +71,8 @@ std::string base64(std::string_view bytes) {
   return text;
 }
 
-/// A file as a part of a page that is not run.
-std::string inside(const std::string& id, const std::string& path) {
+/// A file as a part of a page that is not run. `magic`: its first bytes.
+std::string inside(const std::string& id, const std::string& path, std::string_view magic = {}) {
   require_exists(path);
   std::error_code failed;
   const std::uint64_t size = std::filesystem::file_size(native_path(path), failed);
@@ -82,9 +83,16 @@ std::string inside(const std::string& id, const std::string& path) {
          "--listen-web 127.0.0.1:8080 --insecure-web",
          path, size, kMost, path);
   }
+  const std::string bytes = file_contents(path);
+  if (!bytes.starts_with(magic)) {
+    fail(
+        Exit::bad_input,
+        "{}: is no binary glTF file (.glb), which the page takes; gi-trace --export-gltf makes one",
+        path);
+  }
   return fmt::format(
       "<script type=\"application/octet-stream\" id=\"{}\" data-name=\"{}\">{}</script>\n", id,
-      escaped(path_text(native_path(path).filename())), base64(file_contents(path)));
+      escaped(path_text(native_path(path).filename())), base64(bytes));
 }
 
 std::string page_of(const ViewOptions& options) {
@@ -102,7 +110,7 @@ std::string page_of(const ViewOptions& options) {
     fail(Exit::bad_input, "{}: is not the viewer.html that script/build-web makes", page);
   }
   std::string files = inside("container", options.input);
-  if (!options.scene.empty()) files += inside("scene", options.scene);
+  if (!options.scene.empty()) files += inside("scene", options.scene, "glTF");
   return text.replace(at, kMark.size(), files);
 }
 

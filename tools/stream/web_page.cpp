@@ -55,7 +55,15 @@ bool takes_brotli(std::string_view list) noexcept {
     std::string_view one = list.substr(0, list.find(','));
     list.remove_prefix(std::min(list.size(), one.size() + 1));
     one.remove_prefix(std::min(one.size(), one.find_first_not_of(' ')));
-    if (one == "br" || (one.starts_with("br;") && !one.ends_with("q=0"))) return true;
+    if (!one.starts_with("br")) continue;
+    one.remove_prefix(2);
+    if (one.empty()) return true;
+    // ";q=0", ";q=0.0" and so on refuse it.
+    const std::size_t weight = one.find("q=");
+    if (one.starts_with(';') &&
+        (weight == one.npos || one.find_first_of("123456789", weight) != one.npos)) {
+      return true;
+    }
   }
   return false;
 }
@@ -66,7 +74,7 @@ WebAnswer page(const char* status, const char* type, const std::string& body) {
 
 /// "localhost" or an address, with a port or without.
 bool is_plain_host(std::string_view host) noexcept {
-  if (host.starts_with('[')) return true;
+  if (host.starts_with('[')) return host.find(']') != host.npos;
   const std::string_view name = host.substr(0, host.find(':'));
   return name == "localhost" ||
          (!name.empty() && name.find_first_not_of("0123456789.") == name.npos);

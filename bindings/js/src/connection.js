@@ -40,10 +40,12 @@ export class Connection {
     this.#why = '';
     socket.binaryType = 'arraybuffer';
     const is = () => socket === this.#socket;
-    socket.onopen = () => is() && this.#guard(() => socket.send(this.client.hello()));
+    let opened = false;
+    socket.onopen = () => is() && this.#guard(() => (opened = true, socket.send(this.client.hello())));
     socket.onmessage = ({data}) => is() && this.#guard(() => this.#take(data));
     socket.onclose = (event) => is() && this.#again(
-        this.#why || event?.reason || `the connection closed (${event?.code ?? 'no code'})`);
+        this.#why || event?.reason || (opened ? `the connection closed (${event?.code ?? 'no code'})`
+          : 'there was no connection: nothing listens there, or the server lets no pages of this origin in (--allow-origin)'));
     socket.onerror = (event) => (this.#why = event?.message ?? '');  // close follows
     this.#listen();
   }
@@ -69,7 +71,6 @@ export class Connection {
     this.#listen();
     const before = client.state.serial;
     const goesOn = client.receive(message);
-    this.#wait = 0;
     if (goesOn && this.#options.everything !== false) this.#chooseAll();
     this.send();
     if (!goesOn) {
@@ -77,7 +78,9 @@ export class Connection {
       return reasonNumber === SHUTDOWN ? this.#again(reason) : this.#finish(reason);
     }
     const {serial, consistent} = client.state;
-    if (serial !== before && consistent) this.#options.onUpdate?.(client);
+    if (serial === before) return;
+    this.#wait = 0;  // what says nothing is not asked again at once
+    if (consistent) this.#options.onUpdate?.(client);
   }
 
   #chosen = new Set();

@@ -13,11 +13,14 @@ export async function fetchRanges(url, init = {}) {
   const response = await ask(0, FIRST - 1);
   if (response.status !== 206) return response;
   const total = sizeOf(response);
-  if (total === null) return fetch(url, init);  // it does not show another origin's pages how much there is
+  if (total === null) {  // it does not show another origin's pages how much there is
+    response.body?.cancel().catch(() => {});
+    return fetch(url, init);
+  }
   const mark = markOf(response);
   const head = new Uint8Array(await response.arrayBuffer());
   return {
-    url: response.url, size: total,
+    url: response.url, type: response.headers.get('content-type'), size: total,
     async read(offset, size) {
       if (offset + size <= head.length) return head.subarray(offset, offset + size);
       const part = await ask(offset, offset + size - 1);

@@ -87,16 +87,21 @@ const FACES = {  // towards +x, -x, +y, -y, +z, -z of the volume
   '+x': [1, 0, 0], '-x': [0, 1, 0], '+y': [0, 0, 1], '-y': [1, 1, 0], '+z': [0.25, 0, 1], '-z': [0, 0.5, 0.5],
 };
 
-/** A container of ambient cubes, each with the colours of FACES by `share(x, y, z)`. */
-async function cubes([nx, ny, nz], metadata, share = () => 1) {
-  const writer = await Writer.create({room: {...await volumeOfLayout('bevy', [nx, ny, nz]), metadata: {'gicodec:layout': 'bevy', ...metadata}}});
+/** The texels of ambient cubes, each with the colours of FACES by `share(x, y, z)`. */
+function cubeTexels([nx, ny, nz], share = () => 1) {
   const texels = new Uint32Array(nx * 2 * ny * 3 * nz);
   Object.values(FACES).forEach((color, face) => {
     for (let z = 0; z < nz; ++z) for (let y = 0; y < ny; ++y) for (let x = 0; x < nx; ++x) {
       texels[x + nx * (y + face % 2 * ny + 2 * ny * (z + (face >> 1) * nz))] = rgb9e5(...color.map((one) => one * share(x, y, z)));
     }
   });
-  writer.add(0, {voxels: texels});
+  return texels;
+}
+
+/** A container of such. */
+async function cubes(grid, metadata, share) {
+  const writer = await Writer.create({room: {...await volumeOfLayout('bevy', grid), metadata: {'gicodec:layout': 'bevy', ...metadata}}});
+  writer.add(0, {voxels: cubeTexels(grid, share)});
   return writer.finish();
 }
 
@@ -201,5 +206,38 @@ for (const name of ['webgl', 'webgpu']) {
     });
 
     test('nothing was said', () => assert.deepEqual(said, []));
+
+    test('what cannot light becomes textures or is left out, and the rest lights', async () => {
+      const bevy = {...await volumeOfLayout('bevy', [2, 2, 2]), metadata: {'gicodec:layout': 'bevy', 'gicodec:bounds': '0 0 0 2 2 2'}};
+      const flat = (format, slices) => ({kind: 'textures', textures: [{name: 'map', format, grid: [1, 1, slices], block: [8, 8, 1], tiling: 'slices_xy_z'}]});
+      const writer = await Writer.create({
+        good: bevy, words: {...flat('A2R10G10B10_UNORM_PACK32', 6), metadata: {'gicodec:layout': 'bevy'}},
+        bytes: {...flat('R8_UNORM', 21), metadata: {'gicodec:layout': 'three'}},
+        cut: {...flat('R16G16B16A16_SFLOAT', 5), metadata: {'gicodec:layout': 'three'}}});
+      writer.add(0, {good: {voxels: cubeTexels([2, 2, 2])}, words: {map: new Uint32Array(384)}, bytes: {map: new Uint8Array(64 * 21)},
+                     cut: {map: new Uint16Array(64 * 5 * 4)}});
+      server.put('/mixed.gic', writer.finish());
+      assert.deepEqual(await call('types', '/mixed.gic'), {good: 'AmbientCubeVolume', words: 'TextureVolume', bytes: 'TextureVolume'});
+      assert.ok(said.some((line) => line.includes('"cut" is left out')), said);
+      const {colors} = await call('tiles', '/mixed.gic', [[[1, 1, 1], [1, 0, 0]]]);
+      near(colors[0], FACES['+x'], 'the good one');
+    });
+
+    test('programs do not grow with what comes and goes', {skip: name === 'webgpu'}, async () => {
+      const counts = await call('programs', '/cubes.gic', 8);
+      assert.equal(counts.at(-1), counts[0], counts);
+    });
+
+    test('as many volumes light as a material has textures for', async () => {
+      const grid = [1, 1, 1], names = Array.from({length: 40}, (_, i) => `room${i}`);
+      const volume = {...await volumeOfLayout('bevy', grid), metadata: {'gicodec:layout': 'bevy', 'gicodec:bounds': '0 0 0 2 2 2'}};
+      const writer = await Writer.create(Object.fromEntries(names.map((one) => [one, volume])));
+      const texels = cubeTexels(grid, () => 1 / 64);
+      writer.add(0, Object.fromEntries(names.map((one) => [one, {voxels: texels}])));
+      server.put('/many.gic', writer.finish());
+      const {colors: [[red]]} = await call('tiles', '/many.gic', [[[1, 1, 1], [1, 0, 0]]]);
+      assert.ok(red >= 9 / 64 - 1e-3 && red < 40 / 64, `${red}`);
+      assert.ok(said.some((line) => line.includes('does not light all')), said);
+    });
   });
 }

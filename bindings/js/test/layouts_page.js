@@ -78,7 +78,8 @@ window.page = {
       camera.lookAt(from);
       colors.push(await middle(scene, camera));
     }
-    const box = [...object.boundingBox.min.toArray(), ...object.boundingBox.max.toArray()];
+    const {min, max} = object.boundingBox ?? new THREE.Box3();
+    const box = [...min.toArray(), ...max.toArray()];
     object.dispose();
     object.removeFromParent();
     tile.geometry.dispose();
@@ -106,6 +107,33 @@ window.page = {
     material.dispose();
     object.dispose();
     return {colors, refused};
+  },
+
+  /** Programs of the renderer after each of some loads of a file, into the same scene. */
+  async programs(url, times) {
+    const scene = new THREE.Scene();
+    scene.add(new THREE.Mesh(new THREE.PlaneGeometry(), new THREE.MeshLambertMaterial()));
+    const camera = new THREE.OrthographicCamera();
+    const counts = [];
+    for (let i = 0; i < times; ++i) {
+      const object = await load(url);
+      scene.add(object);
+      await middle(scene, camera);
+      object.removeFromParent();
+      object.dispose();
+      await middle(scene, camera);
+      counts.push(renderer.info.programs.length);
+    }
+    return counts;
+  },
+
+  /** What a file becomes: the type of each volume by name. */
+  async types(url) {
+    const object = await load(url);
+    const all = object.isGroup ? object.children : [object];
+    const types = Object.fromEntries(all.map(({name, type}) => [name, type]));
+    object.dispose();
+    return types;
   },
 
   /** The texels of a texture of three's own over these bytes of compressed blocks. */

@@ -2,7 +2,9 @@
 import {Decoder, GicodecError, open, peek, ready, useWorkers, type Player, type Texels} from 'gicodec';
 import {connect, type ClientVolume} from 'gicodec/client';
 import {Encoder, Writer, ddgiIrradiance, volumeOfLayout, type VolumeDesc} from 'gicodec/encoder';
-import {GIClient, GILoader, captureLightProbeGrid, saveLightProbeGrid} from 'gicodec/three';
+import {
+  GIClient, GILoader, ProbeVolume, ProbeVolumeHelper, captureLightProbeGrid, saveLightProbeGrid, type StateGrid,
+} from 'gicodec/three';
 import type {Camera, Scene, Texture, WebGLRenderer} from 'three';
 import type {OwnBytes} from 'gicodec';
 
@@ -54,11 +56,15 @@ export async function light(scene: Scene, renderer: WebGLRenderer): Promise<OwnB
   const loader = new GILoader().detectSupport(renderer).setWorkerLimit(1);
   loader.setPath('light/').setRequestHeader({authorization: 'x'});
   const grid = await loader.loadAsync('room.gic', ({loaded, total}) => console.log(loaded / total));
-  scene.add(grid);
+  scene.add(grid, await loader.loadAsync<StateGrid>('hall.gic'));
   if ('slice' in grid) {
     const map: Texture = grid.slice('lightmap', 4);
     console.log(grid.layout, map.name, grid.textures.get('Indirection'));
-  } else if ('resolution' in grid) {
+  } else if (grid instanceof ProbeVolume) {
+    grid.add(new ProbeVolumeHelper(grid, {colors: 'age'}));
+    grid.addEventListener('error', ({error}) => console.error(error.message));
+  } else if ('isLightProbeGrid' in grid) {
+    grid.addEventListener('state', ({state}) => console.log(state));
     grid.state = 12.5;
     await grid.setState(grid.states[0]?.name ?? 'noon');
     // @ts-expect-error: a state is a number or a name

@@ -20,6 +20,7 @@ before(async () => {
   run('gi-trace', '--scene', 'tomb', '--grid', '8x4x8', '--frames', '1', '--start', '2', '-o', 'other.gic');
   run('gi-trace', '--scene', 'tomb', '--export-gltf', 'room.glb');
   writeFileSync(join(folder, '<img src=x onerror=alert(1)>.gic'), readFileSync(join(folder, 'room.gic')));
+  writeFileSync(join(folder, 'same.gic'), readFileSync(join(folder, 'room.gic')));
   writeFileSync(join(folder, 'bad.gic'), 'no container');
   writeFileSync(join(folder, 'notes.txt'), 'text');
   execFileSync(process.execPath, [join(SOURCE, 'tools/web/build.mjs'), '--npm', join(project, 'node_modules/gicodec'),
@@ -121,6 +122,24 @@ test('dropped files, and another beside', async () => {
   await page.close();
 });
 
+test('a file beside itself differs in no state, and the next one is compared with none', async () => {
+  const {page, wrong} = await open();
+  await drop(page, 'room.glb', 'room.gic', 'same.gic');
+  await page.focus('#view');
+  for (let step = 0; step < 3; ++step) {
+    await setTimeout(300);
+    assert.ok(await lit(page) < 1e-3, `state ${step}`);
+    await page.keyboard.press('Period');
+  }
+  await drop(page, 'other.gic');
+  assert.equal(await shown(page, '#difference'), false);
+  assert.equal(await page.$eval('[name=mode]:checked', ({value}) => value), 'both');
+  await setTimeout(300);
+  assert.ok(await lit(page) > 0.1);
+  assert.deepEqual(wrong, []);
+  await page.close();
+});
+
 test('a server shows its own page, and refuses those of others', async () => {
   const [url] = live.said().match(/http:\/\/127\.0\.0\.1:\d+\/\?server/);
   const {page, wrong} = await open('', {url});
@@ -147,7 +166,8 @@ test('a server behind nginx, which has the certificate', async () => {
   const behind = await giServer(join(folder, 'room.gic'), {options: ['--web-page', join(folder, 'page'), '--web-scene', '--allow-origin', origin, '--behind-proxy']});
   let conf = readFileSync(join(SOURCE, 'packaging/nginx/gi-server.conf'), 'utf8');
   for (const [from, to] of [
-    ['listen 443 ssl;', `listen 127.0.0.1:${port} ssl;`], ['listen [::]:443 ssl;', ''], ['http://127.0.0.1:8080', `http://${behind.address}`],
+    ['listen 443 ssl;', `listen 127.0.0.1:${port} ssl;`], ['listen [::]:443 ssl;', ''],
+    ['listen 80;', `listen 127.0.0.1:${portOf(2)};`], ['listen [::]:80;', ''], ['http://127.0.0.1:8080', `http://${behind.address}`],
     ['/etc/letsencrypt/live/light.example.org/fullchain.pem', `${own}/chain.pem`],
     ['/etc/letsencrypt/live/light.example.org/privkey.pem', `${own}/key.pem`], ['/srv/light/', `${folder}/`]]) {
     assert.ok(conf.includes(from), from);
@@ -188,6 +208,10 @@ test('a server: asked about, followed, lost, reconnected', async () => {
   await page.waitForFunction(() => [...document.querySelectorAll('#graphs output')].every(({textContent}) => textContent !== ''));
   assert.ok(await lit(page) > 0.3);
   assert.deepEqual(wrong, []);
+  await drop(page, 'bad.gic');
+  await setTimeout(1000);  // updates go on
+  assert.equal(await shown(page, '#error'), true);
+  await page.click('#dismiss');
   live.child.kill('SIGKILL');
   await page.waitForFunction(() => !document.getElementById('error').hidden, {timeout: 60000});
   assert.match(await text(page, '#error p'), /connection was lost.*\nThe next try/);

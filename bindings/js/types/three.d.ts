@@ -2,6 +2,7 @@ import type {
   Box3, Camera, Data3DTexture, DataArrayTexture, EventDispatcher, Group, Light, Loader, LoadingManager, Object3D, Texture, Vector3,
 } from 'three';
 import type {ClientOptions, ClientState} from './client.js';
+import type {Limits} from './common.js';
 import type {OwnBytes, Source, Texels} from './index.js';
 
 /** A frame of a container. `time` is null where states have names alone. */
@@ -10,20 +11,28 @@ export interface State { readonly frame: number; readonly time: number | null; r
 /** What a loaded object has: the states of its container, by frame. */
 export interface WithStates {
   readonly states: readonly State[];
-  /** A time or a name. Decoded when it is set: see setState(). */
-  state: number | string;
-  /** Resolves once that state is shown, or a later one was asked for. Events: "state", "error". */
+  /** A time or a name. Decoded when it is set; what goes wrong then is an event "error". See setState(). */
+  get state(): number | string;
+  set state(state: number | string);
+  /** Resolves once that state is shown, or a later one was asked for. A time beyond the states shows the nearest. */
   setState(state: number | string): Promise<void>;
+  /** "state": another one is shown. "error": one that `state` was set to cannot be. */
+  addEventListener(type: 'state', listener: (event: {type: 'state', state: number | string}) => void): void;
+  addEventListener(type: 'error', listener: (event: {type: 'error', error: Error}) => void): void;
+  removeEventListener(type: 'state', listener: (event: {type: 'state', state: number | string}) => void): void;
+  removeEventListener(type: 'error', listener: (event: {type: 'error', error: Error}) => void): void;
 }
 
-/** LightProbeGrid, or LightProbeGridWebGL. Between two states it shows a blend of them. */
-export interface StateGrid extends Light, WithStates {
+/** LightProbeGrid, or LightProbeGridWebGL. */
+export interface ProbeGrid extends Light {
   readonly isLightProbeGrid: true;
   readonly resolution: Vector3;
   readonly boundingBox: Box3;
   priority: number;
   readonly texture: Data3DTexture | null;
 }
+/** Between two states it shows a blend of them. */
+export type StateGrid = ProbeGrid & WithStates;
 
 /** What a volume becomes. Each has dispose(). */
 export type LoadedVolume = StateGrid | (ProbeVolume & WithStates) | (AmbientCubeVolume & WithStates) | (TextureVolume & WithStates);
@@ -38,11 +47,15 @@ export class GILoader extends Loader<Loaded> {
   constructor(manager?: LoadingManager);
   /** Turns textures of float to half, which loses bits. */
   half: boolean;
+  /** Of what a file may claim: at first 512 MB of textures. */
+  limits: Limits;
   /** Says for which renderer objects are made: without it for WebGLRenderer that filters float. */
   detectSupport(renderer: object): this;
   /** Decodes in that many workers, whatever loads; 0: on the page's thread. */
   setWorkerLimit(count: number): this;
-  parse(source: Source): Promise<Loaded>;
+  /** `loadAsync<StateGrid>('room.gic')` where a file is known; else `instanceof`, or 'isLightProbeGrid' in it, tells. */
+  loadAsync<T extends Loaded = Loaded>(url: string, onProgress?: (event: ProgressEvent) => void): Promise<T>;
+  parse<T extends Loaded = Loaded>(source: Source): Promise<T>;
   parse(source: Source, onLoad: (object: Loaded) => void, onError?: (error: unknown) => void): void;
   abort(): this;
   /** Ends what loads. Objects that were made end with their own dispose(). */
@@ -146,8 +159,8 @@ export interface GIClientEvents {
   connected: object;
   /** What an update cost, once it is shown. */
   update: {state: ClientState, blocks: number, decodeMs: number, uploadMs: number, uploadedBytes: number};
-  /** The server has other volumes. */
-  volumes: object;
+  /** The server has other volumes; those that cannot be shown are not in `object`. */
+  volumes: {names: string[]};
   /** The connection was lost; the next try is in `wait` milliseconds. */
   lost: {wait: number, why: string};
   /** The session ended for good. */

@@ -1,10 +1,10 @@
 // Graphs of the last minute of a live session.
 const SECONDS = 60;
-const SERIES = [['Mbps', 'Mbit/s'], ['delay', 'ms behind the best'], ['decode', 'ms an update'], ['blocks', 'blocks/s']];
+const SERIES = [['Mbps', 'Mbit/s'], ['delay', 'ms later than the earliest'], ['decode', 'ms an update'], ['blocks', 'blocks/s']];
 
 export class Graphs {
   #series = new Map();
-  #best = Infinity;
+  #arrivals = [];
   #second = {bytes: 0, blocks: 0, decode: [], delay: []};
   #bytes = 0;
   #timer;
@@ -27,15 +27,23 @@ export class Graphs {
 
   /** Takes an update of a GIClient. */
   add({state, blocks, decodeMs}) {
-    const delay = performance.now() - state.time * 1000;
-    // A clock that jumps, such as that of a file that begins again, is a new one.
-    if (Math.abs(delay - this.#best) > 60000) this.#best = delay;
-    this.#best = Math.min(this.#best, delay);
     this.#second.bytes += Math.max(0, state.bytes - this.#bytes);
     this.#bytes = state.bytes;
     this.#second.blocks += blocks;
     this.#second.decode.push(decodeMs);
-    this.#second.delay.push(delay - this.#best);
+    this.#second.delay.push(this.#behind(state.update));
+  }
+
+  /** Milliseconds by which an update comes later than the earliest of the last minute would have: updates are evenly spaced. */
+  #behind(update) {
+    const now = performance.now();
+    if (update < (this.#arrivals.at(-1)?.update ?? 0)) this.#arrivals = [];  // another session
+    this.#arrivals.push({now, update});
+    while (now - this.#arrivals[0].now > 1000 * SECONDS) this.#arrivals.shift();
+    const [first] = this.#arrivals;
+    const interval = update > first.update ? (now - first.now) / (update - first.update) : 0;
+    const late = this.#arrivals.map((one) => one.now - one.update * interval);
+    return late.at(-1) - late.reduce((least, one) => Math.min(least, one), Infinity);
   }
 
   #tick() {

@@ -9,15 +9,20 @@ import {Timeline} from './timeline.js';
 const find = (id) => document.getElementById(id);
 const stage = new Stage(find('view'));
 const timeline = new Timeline(() => stage.refresh(), showError);
-let live = null, graphs = null;
+let live = null, graphs = null, opened = [];  // what the file shows, without the one beside
 
 const megabytes = (bytes) => `${(bytes * 1e-6).toFixed(bytes < 1e7 ? 2 : 1)} MB`;
 const lightsOf = (object) => (object.isGroup ? [...object.children] : [object]);
 
+/** Ends what is followed, and what is compared. */
 function disconnect() {
   live?.dispose();
   graphs?.end();
   live = graphs = null;
+  opened = [];
+  stage.setLights([], true);
+  if (find('difference').firstElementChild.checked) document.querySelector('[name=mode][value=both]').click();
+  find('difference').hidden = true;
 }
 
 /** Shows a container: bytes, a File or a URL. `beside`: to be compared with what is shown. */
@@ -30,13 +35,15 @@ async function openContainer(source, name, beside = false) {
   const lights = lightsOf(object);
   if (beside) {
     stage.setLights([object], true);
+    timeline.follow([...opened, ...lights]);
     find('difference').hidden = false;
     find('difference').firstElementChild.click();
     return;
   }
   disconnect();
   stage.setLights([object]);
-  timeline.follow(lights.filter(({states}) => states));
+  opened = lights;
+  timeline.follow(lights);
   showTitle(name);
   const [first] = lights;
   const probes = first.grid ?? first.resolution?.toArray();
@@ -51,29 +58,42 @@ function setProbes(kind) {
   stage.probes = kind;
 }
 
-/** Follows a server. */
-function connect(url, token) {
+/** Follows a server, by packets of its own or, where there is no more room for such, by those of all. */
+function connect(url, token, delivery = 'unicast') {
+  const {host, username, password} = new URL(url);
+  if (username || password) throw new TypeError('an address with a name or a password in front of its host is not followed');
   disconnect();
   hideError();
   timeline.follow([]);
-  showTitle(new URL(url).host);
-  const client = (live = new GIClient(stage.renderer, url, token ? {token} : {}));
+  showTitle(host);
+  const client = (live = new GIClient(stage.renderer, url, {delivery, ...(token ? {token} : {})}));
   graphs = new Graphs(find('graphs'));
   stage.setLights([client.object]);
   const retry = () => connect(url, token);
-  let framed = false;
-  client.addEventListener('volumes', () => { if (!framed && !stage.lit) setProbes('light'); });
+  let framed = false, lost = false, unseen = [];
+  client.addEventListener('volumes', ({names}) => {
+    const seen = client.object.children.map(({name}) => name);
+    unseen = names.filter((name) => !seen.includes(name));
+    if (!framed && !stage.lit) setProbes('light');
+  });
   client.addEventListener('update', (event) => {
     graphs?.add(event);
     stage.refresh();
-    hideError();
+    if (lost) hideError();
+    lost = false;
     if (!framed) { framed = true; if (!stage.lit) stage.frame(); }
     const {statistics, state} = client;
-    showFacts([['received', megabytes(statistics.bytes)], ['updates', state.serial], ['time', `${state.time.toFixed(2)} s`]]);
+    showFacts([['received', megabytes(statistics.bytes)], ['updates', state.serial], ['time', `${state.time.toFixed(2)} s`],
+               ...unseen.map((name) => [name, 'which nothing on this page shows'])]);
   });
-  client.addEventListener('lost', ({wait, why}) => showError(
-      {message: `The connection was lost: ${why}.\nThe next try is in ${(wait * 1e-3).toFixed(1)} s.`}, retry));
-  client.addEventListener('closed', ({reason}) => showError({message: `The server ended the session: ${reason}`}, retry));
+  client.addEventListener('lost', ({wait, why}) => {
+    lost = true;
+    showError({message: `The connection was lost: ${why}.\nThe next try is in ${(wait * 1e-3).toFixed(1)} s.`}, retry);
+  });
+  client.addEventListener('closed', ({reason}) => {
+    if (delivery === 'unicast' && reason.includes('unicast')) connect(url, token, 'shared');
+    else showError({message: `The server ended the session: ${reason}`}, retry);
+  });
   client.addEventListener('error', ({error}) => showError(error, retry));
 }
 
@@ -125,6 +145,15 @@ async function askForServer(url, why = '') {
     connect(find('url').value, token);
   } catch (error) {
     showError(error);
+  }
+}
+
+/** Where an address leads, whatever it looks like. */
+function hostOf(url) {
+  try {
+    return new URL(url).host;
+  } catch {
+    return 'whose address is none';
   }
 }
 
@@ -181,7 +210,7 @@ async function begin() {
   if (server === null) return;
   const url = server === '' || server === '1' ? ownServer() : server;
   if (url.replace(/\/$/, '') === ownServer()) connect(url, '');
-  else await askForServer(url, 'The link to this page asks to connect to another server. Connect only to one that you know.');
+  else await askForServer(url, `The link to this page asks to connect to another server, ${hostOf(url)}. Connect only to one that you know.`);
 }
 
 listen();

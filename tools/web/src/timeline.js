@@ -26,10 +26,14 @@ export class Timeline {
     this.#states = longest.map((state, place) => ({...state, at: state.time ?? place}));
     find('timeline').hidden = this.#states.length < 2;
     if (this.#states.length < 2) return;
-    const times = this.#states.map(({at}) => at);
-    Object.assign(this.#slider, {min: Math.min(...times), max: Math.max(...times)});
-    this.#slider.value = times[0];
-    this.#say(times[0]);
+    const [{at}] = this.#states;
+    const [min, max] = this.#ends();
+    Object.assign(this.#slider, {min, max, value: at});
+    this.#say(at);
+  }
+
+  #ends() {
+    return this.#states.reduce(([least, most], {at}) => [Math.min(least, at), Math.max(most, at)], [Infinity, -Infinity]);
   }
 
   /** The state at or before a time. */
@@ -60,8 +64,7 @@ export class Timeline {
     if (this.#states.length < 2) return;
     find('play').textContent = '⏸';
     const playing = (this.#playing = {});
-    const times = this.#states.map(({at}) => at);
-    const [first, last] = [Math.min(...times), Math.max(...times)];
+    const [first, last] = this.#ends();
     // A day passes in half a minute, a recording as it was.
     const speed = last - first > 30 ? (last - first) / 30 : 1;
     let before = performance.now();

@@ -4,14 +4,14 @@ import {Box3, Vector3} from 'three';
 import {boxOrCells} from './axes.js';
 import {cubeShader} from './cube_shader.js';
 import {uploadAll, uploadBlocks} from './partial_upload.js';
-import {hasFormat, makeTexture, setImage} from './texture_formats.js';
+import {isFiltered, makeTexture, setImage} from './texture_formats.js';
 import {Tiles} from './tilings.js';
 import {VolumeLight} from './volume_light.js';
 
 /** The number of the texture of such a volume; null: it is no such volume. */
 export function cubeTextures({metadata, firstTexture}, textures) {
   const {format, height, slices} = textures[firstTexture] ?? {};
-  return metadata['gicodec:layout'] === 'bevy' && hasFormat(format) && height % 2 === 0 && slices % 3 === 0 ? [firstTexture] : null;
+  return metadata['gicodec:layout'] === 'bevy' && isFiltered(format) && height % 2 === 0 && slices % 3 === 0 ? [firstTexture] : null;
 }
 
 /** Lights what is in its box, as Bevy does: six colours in each voxel, three of them by the normal. */

@@ -23,10 +23,11 @@ export class GIClient extends EventDispatcher {
   #metadata;
   #turn = Promise.resolve();
   #send;
-  #end = () => {};
+  #free = () => {};
   #volumes = new Map();
   #viewed = 0;
   #ended = false;
+  #failed = false;
 
   /** `url`: wss://HOST:PORT of gi-server --listen-web. `worker: false` decodes on the page's thread. */
   constructor(renderer, url, options = {}) {
@@ -56,17 +57,18 @@ export class GIClient extends EventDispatcher {
       made.onerror = ({message: why}) => this.#fail(new Error(
           `the worker failed: ${why ?? 'it could not start; a content security policy needs worker-src blob:'}`));
       this.#send = (one) => made.postMessage(one);
-      this.#end = () => { made.terminate(); URL.revokeObjectURL(url); };
+      this.#free = () => { made.terminate(); URL.revokeObjectURL(url); };
     } else {
       const host = new ClientHost(take);
       this.#send = (one) => host.take(one);
+      this.#free = () => host.take({type: 'close'});
     }
     this.#send({type: 'connect', module, ...message});
   }
 
   /** Follows messages one after the other. */
   #take({type, ...values}) {
-    this.#turn = this.#turn.then(() => this.#ended || this.#follow(type, values)).catch((error) => this.#fail(error));
+    this.#turn = this.#turn.then(() => this.#ended || this.#failed || this.#follow(type, values)).catch((error) => this.#fail(error));
   }
 
   #follow(type, values) {
@@ -78,14 +80,16 @@ export class GIClient extends EventDispatcher {
         return this.dispatchEvent({type, ...values});
       case 'closed':
         this.dispatchEvent({type, ...values});
-        return this.#end();
+        return this.#free();
       default:
         return this.#fail(Object.assign(new Error(values.error.message), values.error));
     }
   }
 
   #fail(error) {
-    this.#end();
+    if (this.#failed) return;
+    this.#failed = true;
+    this.#free();
     console.error('GIClient:', error);
     this.dispatchEvent({type: 'error', error});
   }
@@ -100,7 +104,10 @@ export class GIClient extends EventDispatcher {
         console.info(`GIClient: ${JSON.stringify(volume.name)}, of kind ${volume.kind}, has no texture that a GPU can have`);
         continue;
       }
-      const shown = await found.make(this.#renderer);
+      const shown = await found.make(this.#renderer).catch((error) => {
+        console.error(`GIClient: ${JSON.stringify(volume.name)} is left out:`, error);
+      });
+      if (!shown) continue;
       if (this.#ended) return shown.dispose();
       const texels = new Map(whole.map(({ArrayType, textureBytes}, i) => (
           [i, new ArrayType(textureBytes / ArrayType.BYTES_PER_ELEMENT)])));
@@ -108,7 +115,7 @@ export class GIClient extends EventDispatcher {
       this.#volumes.set(id, {shown, texels, textures: whole, tiles: whole.map((one) => new Tiles(one))});
       this.object.add(shown);
     }
-    this.dispatchEvent({type: 'volumes'});
+    this.dispatchEvent({type: 'volumes', names: volumes.map(({name}) => name)});
   }
 
   #forget() {
@@ -176,7 +183,7 @@ export class GIClient extends EventDispatcher {
     if (this.#ended) return;
     this.#ended = true;
     this.#send?.({type: 'close'});
-    setTimeout(this.#end, 1000);  // once the goodbye is sent
+    setTimeout(this.#free, 1000);  // once the goodbye is sent
     this.#forget();
     this.object.removeFromParent();
   }

@@ -2,6 +2,8 @@
 import {AnalyticLightNode} from 'three/webgpu';
 import {Fn, If, PI, normalWorld, positionWorld, renderGroup, texture3D, uniform, vec3} from 'three/tsl';
 
+import {haveRoom} from './node_textures.js';
+
 /** The node of an AmbientCubeVolume. */
 export class AmbientCubeVolumeNode extends AnalyticLightNode {
   static get type() {
@@ -9,6 +11,7 @@ export class AmbientCubeVolumeNode extends AnalyticLightNode {
   }
 
   setup(builder) {
+    if (!haveRoom(builder, this.light, 1)) return;
     const {uniforms} = this.light;
     // Shared, so that they are looked at though an object stands still.
     const [fromWorld, least, size] = ['FromWorld', 'Least', 'Size'].map((name) => uniform(uniforms[name].value).setGroup(renderGroup));

@@ -2,7 +2,7 @@
 
 /** What differs in volumes of ambient cubes: nothing. */
 export const cubeShader = {
-  key: 'cubes',
+  key: 'cubes', samplers: 1,
   functions: (id) => /* glsl */`
 uniform highp sampler3D gi${id}Cubes;
 uniform vec3 gi${id}Least, gi${id}Size;  // of the box that is lit

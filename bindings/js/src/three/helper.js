@@ -1,8 +1,11 @@
 // What a volume of probes is made of: its bounds, and a sphere for each active probe.
 import {
-  Box3Helper, Color, DataUtils, DynamicDrawUsage, Group, InstancedMesh, Matrix4, MeshBasicMaterial, SphereGeometry, Vector3,
+  Box3Helper, Color, DataUtils, DynamicDrawUsage, Group, InstancedMesh, Matrix4, MeshBasicMaterial, OctahedronGeometry,
+  SphereGeometry, Vector3,
 } from 'three';
 
+/** Probes from which on they are octahedra. */
+const MANY = 2048;
 const FRESH = new Color(0xff5020), OLD = new Color(0x203860);
 
 /** Decoders of texels to radiance's code: component i of the texel at a byte. */
@@ -30,45 +33,66 @@ const CODES = {
 export class ProbeVolumeHelper extends Group {
   type = 'ProbeVolumeHelper';
   #volume;
-  #spheres;
+  #spheres = null;
+  #radius;
+  #probes;
   #box;
 
   constructor(volume, {radius, colors = 'light', fade = 2000} = {}) {
     super();
+    if (!volume?.isProbeVolume) throw new TypeError(`ProbeVolumeHelper shows a ProbeVolume, not ${volume?.type ?? volume}`);
     if (!['light', 'age'].includes(colors)) throw new RangeError(`colors is "light" or "age", not ${colors}`);
     this.#volume = volume;
     this.colors = colors;
     this.fade = fade;
-    const [nx, ny, nz] = volume.grid, count = nx * ny * nz;
+    const [nx, ny, nz] = volume.grid;
     const first = volume.probePosition(0);
     // To the neighbours along each axis that has any.
     const least = Math.min(...[[nx, 1], [ny, nx], [nz, nx * ny]].filter(([side]) => side > 1)
         .map(([, step]) => volume.probePosition(step).distanceTo(first)), 1);
-    this.#spheres = new InstancedMesh(new SphereGeometry(radius ?? least / 8, 12, 8), new MeshBasicMaterial(), count);
-    this.#spheres.instanceMatrix.setUsage(DynamicDrawUsage);
-    this.#spheres.frustumCulled = false;
+    this.#radius = radius ?? least / 8;
+    this.#probes = nx * ny * nz;
     this.#box = new Box3Helper(volume.boundingBox);
-    this.add(this.#spheres, this.#box);
+    this.add(this.#box);
     this.update();
   }
 
   update(now = performance.now()) {
-    const volume = this.#volume, spheres = this.#spheres;
-    const matrix = new Matrix4(), at = new Vector3(), color = new Color(), hidden = new Matrix4().makeScale(0, 0, 0);
-    let shown = 0;
-    for (let probe = 0; probe < spheres.count; ++probe) {
-      const active = volume.isActive(probe);
-      shown += active;
-      spheres.setMatrixAt(probe, active ? matrix.makeTranslation(volume.probePosition(probe, at)) : hidden);
-      if (!active) continue;
+    const volume = this.#volume, active = [];
+    for (let probe = 0; probe < this.#probes; ++probe) if (volume.isActive(probe)) active.push(probe);
+    const spheres = this.#spheresFor(active.length);
+    const matrix = new Matrix4(), at = new Vector3(), color = new Color();
+    spheres.count = active.length;
+    active.forEach((probe, place) => {
+      spheres.setMatrixAt(place, matrix.makeTranslation(volume.probePosition(probe, at)));
       if (this.colors === 'light') this.#light(probe, color);
       else color.lerpColors(FRESH, OLD, Math.min(1, Math.max(0, (now - volume.changedAt[probe]) / this.fade)));
-      spheres.setColorAt(probe, color);
-    }
+      spheres.setColorAt(place, color);
+    });
     spheres.instanceMatrix.needsUpdate = true;
     if (spheres.instanceColor) spheres.instanceColor.needsUpdate = true;
     /** How many probes are active. */
-    this.shown = shown;
+    this.shown = active.length;
+  }
+
+  /** Room for that many spheres; the more there are, the simpler they are. */
+  #spheresFor(count) {
+    if (this.#spheres && count <= this.#spheres.instanceMatrix.count) return this.#spheres;
+    this.#freeSpheres();
+    const room = Math.max(64, 2 ** Math.ceil(Math.log2(Math.max(1, count))));
+    const geometry = room > MANY ? new OctahedronGeometry(this.#radius) : new SphereGeometry(this.#radius, 12, 8);
+    this.#spheres = new InstancedMesh(geometry, new MeshBasicMaterial(), room);
+    this.#spheres.instanceMatrix.setUsage(DynamicDrawUsage);
+    this.#spheres.frustumCulled = false;
+    this.add(this.#spheres);
+    return this.#spheres;
+  }
+
+  #freeSpheres() {
+    this.#spheres?.removeFromParent();
+    this.#spheres?.geometry.dispose();
+    this.#spheres?.material.dispose();
+    this.#spheres?.dispose();
   }
 
   #light(probe, color) {
@@ -87,9 +111,7 @@ export class ProbeVolumeHelper extends Group {
 
   dispose() {
     this.removeFromParent();
-    this.#spheres.geometry.dispose();
-    this.#spheres.material.dispose();
-    this.#spheres.dispose();
+    this.#freeSpheres();
     this.#box.dispose();
   }
 }

@@ -21,9 +21,12 @@ export class GILoader extends Loader {
   #ended = new AbortController();
   /** Turns textures of float to half, which loses bits. */
   half = false;
+  /** Of what a file may claim, as those of open(). */
+  limits = {maxTotalBytes: 512 << 20};
 
   /** Says for which renderer objects are made: without it, for WebGLRenderer on a desktop. */
   detectSupport(renderer) {
+    if (!renderer) throw new TypeError('detectSupport() takes the renderer that will draw');
     this.#renderer = renderer;
     return this;
   }
@@ -38,7 +41,10 @@ export class GILoader extends Loader {
   load(url, onLoad, onProgress, onError) {
     const address = this.manager.resolveURL((this.path ?? '') + url);
     this.manager.itemStart(address);
-    this.#load((signal, tell) => this.#fetch(address, signal, tell), onProgress ?? (() => {})).then((object) => {
+    this.#load((signal, tell) => this.#fetch(address, signal, tell), onProgress ?? (() => {})).catch((error) => {
+      if (error instanceof Error && !error.message.includes(address)) error.message = `${address}: ${error.message}`;
+      throw error;
+    }).then((object) => {
       onLoad?.(object);
       this.manager.itemEnd(address);
     }, (error) => {
@@ -79,8 +85,8 @@ export class GILoader extends Loader {
       if (!made) onProgress(new ProgressEvent('progress', {lengthComputable: total > 0, loaded, total}));
     };
     try {
-      const {source, whole} = await begin(own.signal, tell);
-      return await this.#make(await seekable(source), whole, own.signal);
+      const {source, whole, type} = await begin(own.signal, tell);
+      return await this.#make(await seekable(source), {whole, type}, own.signal);
     } finally {
       made = true;
       all.removeEventListener('abort', stop);
@@ -93,7 +99,7 @@ export class GILoader extends Loader {
       signal,
     });
     if (!(source instanceof Response)) {
-      return {source: {...source, async read(offset, size) {
+      return {type: source.type, source: {...source, async read(offset, size) {
         const bytes = await source.read(offset, size);
         tell(bytes.length, source.size);
         return bytes;
@@ -105,13 +111,16 @@ export class GILoader extends Loader {
       tell(chunk.length, total);
       controller.enqueue(chunk);
     }}));
-    return {source: counted, whole: source.url || url};
+    return {source: counted, whole: source.url || url, type: source.headers.get('content-type')};
   }
 
-  /** `whole`: the URL of a file that came as a whole. */
-  async #make(source, whole, signal) {
+  /** `whole`: the URL of a file that came as a whole; `type`: what its server calls it. */
+  async #make(source, {whole, type}, signal) {
     await this.#workers;
-    const player = await open(source, {signal});
+    const player = await open(source, {signal, limits: this.limits}).catch((error) => {
+      if (error.code === 'not_gicodec' && type) error.message += `: the server brings ${type}`;
+      throw error;
+    });
     try {
       return await this.#objects(player, whole);
     } catch (error) {
@@ -127,7 +136,7 @@ export class GILoader extends Loader {
       throw new TypeError(`the container has no texture that a GPU can have: it has volumes of kind ${kinds}`);
     }
     const frames = await player.frames();
-    if (frames.length === 0) throw new RangeError('the container has no frames');
+    if (frames.length === 0) throw new RangeError('the container has no whole frame: it is empty, or was cut off');
     if (whole && frames.length > 1) {
       console.info(`GILoader: the server of ${whole} sends no parts of files, so all states are loaded at once`);
     }
@@ -137,10 +146,22 @@ export class GILoader extends Loader {
     const objects = [];
     try {
       await useVolumes(this.#renderer);
-      for (const {make} of shown) {
-        objects.push(await make(this.#renderer, {half: this.half}));
-        await addStates(objects.at(-1), states);
+      const wrong = [];
+      for (const {name, make} of shown) {
+        try {
+          const object = await make(this.#renderer, {half: this.half});
+          objects.push(object);
+          if (object.isTextureVolume) {
+            console.info(`GILoader: ${JSON.stringify(name)} (layout ${object.layout || 'not said'}) lights nothing by itself: ` +
+                         `its textures, ${[...object.textures.keys()].join(', ')}, are for shaders of yours`);
+          }
+        } catch (error) {
+          wrong.push(error);
+          if (wrong.length < shown.length) console.error(`GILoader: ${JSON.stringify(name)} is left out:`, error);
+        }
       }
+      if (objects.length === 0) throw wrong[0];
+      for (const object of objects) await addStates(object, states);
     } catch (error) {
       objects.forEach((object) => object.dispose());
       throw error;

@@ -20,11 +20,20 @@ const IN_FRONT = '#include <lights_pars_begin>', BEHIND = '#include <lights_frag
 /** By material: what it did before, and the volumes that light it. */
 const patched = new WeakMap();
 
-/** Lets a material be lit by a volume, too. `shader`: {key, functions(id)}, of which the key says all that differs. */
-export function patchMaterial(material, id, shader, uniforms) {
+/** Textures that a material may need besides those of volumes. */
+export const OWN = 7;
+
+/**
+ * Lets a material be lit by a volume, too. `shader`: {key, samplers, functions(id)}, of which the key says all
+ * that differs. False: with the others it would have more textures than the `most` that a program can have.
+ */
+export function patchMaterial(material, id, shader, uniforms, most) {
+  const others = patched.get(material)?.lights.values() ?? [];
+  if ([...others].reduce((sum, one) => sum + one.shader.samplers, shader.samplers) > most - OWN) return false;
   const entry = patched.get(material) ?? install(material);
   entry.lights.set(id, {shader, uniforms});
   material.needsUpdate = true;
+  return true;
 }
 
 /** Takes a volume's light off a material; without any the material is as it was. */

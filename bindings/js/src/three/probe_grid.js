@@ -6,7 +6,7 @@ import {uploadAll, uploadBlocks} from './partial_upload.js';
 import {filtersFloat, makeTexture} from './texture_formats.js';
 import {Tiles} from './tilings.js';
 
-const LAYOUTS = ['three', 'three-float32'];
+const LAYOUTS = ['three', 'three-float32'], FORMATS = ['R16G16B16A16_SFLOAT', 'R32G32B32A32_SFLOAT'];
 
 /** Textures of a grid's atlas along z, and slices of each in front and behind, which repeat the nearest one. */
 export const PARTS = 7, PADDING = 1;
@@ -44,8 +44,8 @@ function blend(out, first, second, part, half) {
 }
 
 /** The number of the texture of such a volume; null: it is no such volume. */
-export function gridTextures({metadata, firstTexture}) {
-  return LAYOUTS.includes(metadata['gicodec:layout']) ? [firstTexture] : null;
+export function gridTextures({metadata, firstTexture}, textures) {
+  return LAYOUTS.includes(metadata['gicodec:layout']) && FORMATS.includes(textures[firstTexture]?.format) ? [firstTexture] : null;
 }
 
 /** A LightProbeGrid of a volume. `half` turns float to half. */

@@ -5,6 +5,8 @@ import {
   renderGroup, texture, transformDirection, uint, uniform, vec2, vec3, cameraWorldMatrix,
 } from 'three/tsl';
 
+import {haveRoom} from './node_textures.js';
+
 /** The node of a ProbeVolume. */
 export class ProbeVolumeNode extends AnalyticLightNode {
   static get type() {
@@ -12,6 +14,7 @@ export class ProbeVolumeNode extends AnalyticLightNode {
   }
 
   setup(builder) {
+    if (!haveRoom(builder, this.light, 3)) return;
     const {uniforms, kind} = this.light;
     // Shared, so that they are looked at though an object stands still.
     const value = (name) => uniform(uniforms[name].value).setGroup(renderGroup);

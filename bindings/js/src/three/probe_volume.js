@@ -46,7 +46,7 @@ export class ProbeVolume extends VolumeLight {
     const [color, visibility] = probeTextures(volume, textures);
     /** What shaders differ in. */
     const kind = {words: formatOf(textures[color].format).words ?? null, linear: isLinear(volume, textures[color])};
-    super(volume, renderer, {key: `probes ${kind.words} ${kind.linear}`, functions: (id) => probeFunctions(id, kind)});
+    super(volume, renderer, {key: `probes ${kind.words} ${kind.linear}`, samplers: 3, functions: (id) => probeFunctions(id, kind)});
     this.#renderer = renderer;
     /** @internal */
     this.kind = kind;

@@ -4,6 +4,7 @@ import {PADDING, PARTS, toHalf} from './probe_grid.js';
 
 /** What a grid's texture holds now: {resolution, bounds, texels}, a Uint16Array of halves or a Float32Array. */
 export async function captureLightProbeGrid(renderer, grid) {
+  if (!renderer?.isWebGLRenderer && !renderer?.isWebGPURenderer) throw new TypeError('the renderer that baked the grid is needed');
   if (!grid?.isLightProbeGrid || !grid.texture) {
     throw new TypeError('a LightProbeGrid that was baked or loaded is needed');
   }
@@ -23,6 +24,12 @@ export async function saveLightProbeGrid(renderer, grid, {states = [], half = fa
   if (all.some((one) => `${one.resolution}` !== `${resolution}` || one.texels.constructor !== Type)) {
     throw new RangeError('the states of a container have as many probes each, and one type');
   }
+  if (states.length > 0 && states.length !== all.length) {
+    throw new RangeError(`a file of ${all.length} grids has as many states, not ${states.length}`);
+  }
+  const times = states.map(({time}) => time).filter((time) => time !== undefined);
+  const twice = times.find((time, i) => times.indexOf(time) < i);
+  if (twice !== undefined) throw new RangeError(`two states have the time ${twice}`);
   const halves = half || Type === Uint16Array;
   const layout = halves ? 'three' : 'three-float32';
   const {Writer, volumeOfLayout} = await import('gicodec:entry/encoder');

@@ -17,11 +17,11 @@ const KINDS = [
   {textures: plainTextures, make: (...values) => new TextureVolume(...values)},
 ];
 
-/** {textures, make(renderer, options)} of a volume; null: a GPU can have none of its textures. */
+/** {name, textures, make(renderer, options)} of a volume; null: a GPU can have none of its textures. */
 export function findShown(volume, all) {
   for (const {textures, make} of KINDS) {
     const numbers = textures(volume, all);
-    if (numbers) return {textures: numbers, make: async (renderer, options) => make(volume, all, renderer, options)};
+    if (numbers) return {name: volume.name, textures: numbers, make: async (renderer, options) => make(volume, all, renderer, options)};
   }
   return null;
 }

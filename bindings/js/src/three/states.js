@@ -11,8 +11,8 @@ export function statesOf({metadata}, frames) {
   const known = Number.isFinite(start) && fps > 0;
   return frames.map((frame) => {
     const {time = NaN, name = ''} = named.get(frame) ?? {};
-    const usual = named.size > 0 ? null : known ? start + frame / fps : frame;
-    return {frame, time: Number.isFinite(time) ? time : usual, name};
+    const usual = known && Number.isFinite(start + frame / fps) ? start + frame / fps : frame;
+    return {frame, time: Number.isFinite(time) ? time : named.size > 0 ? null : usual, name};
   });
 }
 
@@ -22,8 +22,8 @@ export function placeOfState(states, wanted) {
     const found = states.find(({name}) => name === wanted);
     if (found) return {first: found.frame, second: found.frame, part: 0};
     const names = states.map(({name}) => name).filter(Boolean);
-    throw new RangeError(`there is no state ${JSON.stringify(wanted)}: ` +
-                         `${names.length ? names.map((name) => JSON.stringify(name)).join(', ') + ' are' : 'none has a name'}`);
+    throw new RangeError(`there is no state ${JSON.stringify(wanted)}; ` +
+                         `${names.length ? `there are ${names.map((name) => JSON.stringify(name)).join(', ')}` : 'none has a name'}`);
   }
   const timed = states.filter(({time}) => time !== null).sort((a, b) => a.time - b.time);
   if (!Number.isFinite(wanted) || timed.length === 0) {

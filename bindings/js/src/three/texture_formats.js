@@ -55,17 +55,36 @@ export function formatOf(name) {
   return {format, type, glFormat, glType, bytes, ...more};
 }
 
+/** Whether shaders can filter a format, 3D textures of it too. */
+export const isFiltered = (name) => Object.hasOwn(FORMATS, name) && !formatOf(name).words && formatOf(name).format !== RGBAIntegerFormat;
+
 /** Whether a texture of that format can be made. */
 export const hasFormat = (name) => Object.hasOwn(FORMATS, name) || Object.hasOwn(COMPRESSED, name);
 
+/** What a renderer takes at most: {flat, deep, layers}, texels along a side and slices of an array; null: not known. */
+function limitsOf(renderer) {
+  const gl = renderer?.isWebGPURenderer ? renderer.backend.gl : renderer?.getContext?.();
+  if (gl) {
+    const most = (name) => gl.getParameter(gl[name]);
+    return {flat: most('MAX_TEXTURE_SIZE'), deep: most('MAX_3D_TEXTURE_SIZE'), layers: most('MAX_ARRAY_TEXTURE_LAYERS')};
+  }
+  const limits = renderer?.backend?.device?.limits;
+  return limits ? {flat: limits.maxTextureDimension2D, deep: limits.maxTextureDimension3D, layers: limits.maxTextureArrayLayers} : null;
+}
+
 /** An array texture of a description, or with `deep` a 3D texture, without texels. */
-export function makeTexture({format: name, width, height, slices}, renderer, deep = false) {
+export function makeTexture({name: called, format: name, width, height, slices}, renderer, deep = false) {
+  const limits = limitsOf(renderer);
+  const [side, depth] = limits ? (deep ? [limits.deep, limits.deep] : [limits.flat, limits.layers]) : [Infinity, Infinity];
+  if (width > side || height > side || slices > depth) {
+    throw new RangeError(`${JSON.stringify(called)} is ${width} × ${height} × ${slices} texels, and this device takes ` +
+                         `${side} × ${side} × ${depth}: pack it in several volumes`);
+  }
   const known = formatOf(name);
   if (!known) return new CompressedArrayTexture([], 4 * width, 4 * height, slices, COMPRESSED[name], UnsignedByteType);
-  const {format, type, words, gl, gpu} = known;
+  const {format, type, gl, gpu} = known;
   const texture = Object.assign(new (deep ? Data3DTexture : DataArrayTexture)(null, width, height, slices), {format, type});
-  const integer = words || format === RGBAIntegerFormat;
-  const filtered = !integer && (type !== FloatType || filtersFloat(renderer));
+  const filtered = isFiltered(name) && (type !== FloatType || filtersFloat(renderer));
   texture.minFilter = texture.magFilter = filtered ? LinearFilter : NearestFilter;
   texture.internalFormat = (renderer?.backend?.isWebGPUBackend ? gpu : gl) ?? null;
   return texture;

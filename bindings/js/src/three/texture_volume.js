@@ -48,7 +48,7 @@ export class TextureVolume extends Object3D {
   /** One slice of a texture as a texture of its own, such as the light map of a layer; it follows the state. */
   slice(name, slice = 0) {
     const [number, {texture, desc}] = [...this.#own].find(([, {desc: {name: called}}]) => called === name) ?? [0, {}];
-    if (!texture) throw new RangeError(`there is no texture ${JSON.stringify(name)}: ${[...this.textures.keys()].join(', ')} are`);
+    if (!texture) throw new RangeError(`there is no texture ${JSON.stringify(name)}; there are ${[...this.textures.keys()].join(', ')}`);
     if (!Number.isInteger(slice) || slice < 0 || slice >= desc.slices) {
       throw new RangeError(`${JSON.stringify(name)} has slices 0 to ${desc.slices - 1}, not ${slice}`);
     }

@@ -5,7 +5,17 @@ import {turnOf} from './axes.js';
 import {patchMaterial, restoreMaterial} from './material_patch.js';
 
 const LIT = ['isMeshStandardMaterial', 'isMeshLambertMaterial', 'isMeshPhongMaterial', 'isMeshToonMaterial'];
-let count = 0;
+/** Textures of a program that every WebGL 2 has. */
+const LEAST_UNITS = 16;
+/** Numbers of volumes, which come again: three.js keeps the programs of each. */
+const taken = new Set();
+
+function takeNumber() {
+  let number = 1;
+  while (taken.has(number)) ++number;
+  taken.add(number);
+  return number;
+}
 
 /**
  * Lights what is drawn with it: WebGPURenderer by a node, WebGLRenderer by a change of the materials in its
@@ -15,8 +25,10 @@ let count = 0;
 export class VolumeLight extends Light {
   /** Whether materials of the scene are changed as they are seen; else those that light() is given. */
   autoLight = true;
-  #id = ++count;
+  #id = takeNumber();
   #shader;
+  #renderer;
+  #refused = false;
   #materials = new Map();  // that it lights, and what forgets each
 
   /** `renderer`: null where it is not known, which then is WebGLRenderer. `shader` as patchMaterial() takes it. */
@@ -25,6 +37,7 @@ export class VolumeLight extends Light {
     this.name = volume.name;
     this.autoLight = !renderer?.isWebGPURenderer;
     this.#shader = shader;
+    this.#renderer = renderer;
     /** From the volume's axes and units to three.js's. @internal */
     this.turn = turnOf(volume.metadata);
     /** Of both kinds of shaders, by name. @internal */
@@ -48,7 +61,12 @@ export class VolumeLight extends Light {
       for (const one of Array.isArray(material) ? material : [material]) {
         if (!one || this.#materials.has(one) || !LIT.some((kind) => one[kind])) continue;
         const uniforms = Object.entries(this.uniforms).map(([name, value]) => [`gi${this.#id}${name}`, value]);
-        patchMaterial(one, this.#id, this.#shader, Object.fromEntries(uniforms));
+        const most = this.#renderer?.capabilities?.maxTextures ?? LEAST_UNITS;
+        if (!patchMaterial(one, this.#id, this.#shader, Object.fromEntries(uniforms), most)) {
+          this.refuse(most);
+          this.#materials.set(one, null);
+          continue;
+        }
         const forget = () => this.#forget(one);
         one.addEventListener('dispose', forget);
         this.#materials.set(one, forget);
@@ -56,9 +74,19 @@ export class VolumeLight extends Light {
     });
   }
 
+  /** Says once what is left out. @internal */
+  refuse(most) {
+    if (this.#refused) return;
+    this.#refused = true;
+    console.error(`GILoader: ${JSON.stringify(this.name)} does not light all: materials have ${most} textures at most, which ` +
+                  'those of other volumes fill; remove some of them');
+  }
+
   #forget(material) {
-    material.removeEventListener('dispose', this.#materials.get(material));
+    const forget = this.#materials.get(material);
     this.#materials.delete(material);
+    if (!forget) return;
+    material.removeEventListener('dispose', forget);
     restoreMaterial(material, this.#id);
   }
 
@@ -71,6 +99,7 @@ export class VolumeLight extends Light {
   }
 
   dispose() {
+    taken.delete(this.#id);
     for (const material of [...this.#materials.keys()]) this.#forget(material);
     super.dispose();
   }
