@@ -111,6 +111,9 @@ proxy() {
   local server
   server proxy --listen-web 127.0.0.1:0 --insecure-web --behind-proxy --max-per-address 2
   server=$last
+  curl -sI http://127.0.0.1:$port/health | tr -d '\r' >head
+  grep -q "^HTTP/1.1 200 OK$" head && grep -q "^Content-Length: 3$" head || failed "HEAD: $(cat head)"
+  [ "$(tail -n 1 head)" = "" ] || failed "HEAD brings a body"
   start forwarded python3 "$here/web_peer.py" forwarded ws://127.0.0.1:$port
   ends 0 $last forwarded
   wait_for proxy "turned away, the last one 203.0.113.7:[0-9]"

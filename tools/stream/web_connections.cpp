@@ -223,13 +223,18 @@ int WebLoop::Loop::answer(WebLink* link, lws* wsi) {
     what = state.shown;
   }
   const bool here = link->peer.loopback && !state.listen.behind_proxy;
-  const WebRequest request{lws_hdr_total_length(wsi, WSI_TOKEN_GET_URI) > 0,
-                           header(wsi, WSI_TOKEN_GET_URI),
+  const bool head = lws_hdr_total_length(wsi, WSI_TOKEN_HEAD_URI) > 0;
+  const WebRequest request{head || lws_hdr_total_length(wsi, WSI_TOKEN_GET_URI) > 0,
+                           header(wsi, head ? WSI_TOKEN_HEAD_URI : WSI_TOKEN_GET_URI),
                            header(wsi, WSI_TOKEN_HTTP_AUTHORIZATION),
                            here,
                            header(wsi, WSI_TOKEN_HOST),
                            header(wsi, WSI_TOKEN_HTTP_ACCEPT_ENCODING)};
   link->page = web_answer(request, what, state.listen.metrics_token, now(), state.files);
+  if (head) {
+    link->page.head.resize(link->page.head.find("\r\n\r\n") + 4);
+    link->page.rest = {};
+  }
   link->answering = true;
   lws_callback_on_writable(wsi);
   return 0;

@@ -10,7 +10,7 @@
 namespace gicodec::streaming {
 
 struct WebRequest {
-  bool get = false;  ///< its method is GET
+  bool get = false;  ///< its method is GET or HEAD
   std::string path, authorization;
   bool loopback = false;       ///< it comes from this machine
   std::string host = {};       ///< by which name it was asked for
