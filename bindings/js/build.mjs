@@ -5,7 +5,7 @@ import {execFileSync} from 'node:child_process';
 import {copyFileSync, existsSync, mkdirSync, readFileSync, rmSync, statSync, writeFileSync} from 'node:fs';
 import {createRequire} from 'node:module';
 import {dirname, join, resolve} from 'node:path';
-import {fileURLToPath} from 'node:url';
+import {fileURLToPath, pathToFileURL} from 'node:url';
 import {parseArgs} from 'node:util';
 
 const here = dirname(fileURLToPath(import.meta.url));
@@ -69,11 +69,21 @@ const embedded = {
       const module = path.slice('gicodec:module/'.length);
       return {contents: `export default {simd: '@${module}/simd@', scalar: '@${module}/scalar@'};`};
     });
+    onLoad({filter: /^gicodec:sample$/, namespace: 'gicodec'}, async () => ({contents: `export default ${literal(await sample())};`}));
     onLoad({filter: /^gicodec:text\//, namespace: 'gicodec'}, async ({path}) => ({
       contents: `export default ${literal(await bundle(path.slice('gicodec:text/'.length), true))};`,
     }));
   },
 };
+
+/** A small grid of light probes as a container, by the entry "encoder", which is built before those that hold it. */
+async function sample() {
+  const {Writer, volumeOfLayout} = await import(pathToFileURL(join(out, 'encoder.js')));
+  const writer = await Writer.create({grid: await volumeOfLayout('three', [4, 4, 4])}, {preset: 'fast'});
+  // Halves around 1 and -1 whose low bits vary.
+  writer.add(0, {grid: Uint16Array.from({length: 4 * 4 * 42 * 4}, (_, i) => 0x3C00 + (i & 1) * 0x8000 + (Math.imul(i, 2654435761) >>> 26) + (i >> 6))});
+  return Buffer.from(writer.finish()).toString('latin1');
+}
 
 /** The text of a source with what it imports: a module, or what a worker runs. */
 async function bundle(name, isWorker = false) {

@@ -1,6 +1,8 @@
 // GILoader: containers as objects of a scene.
 import {Group, Loader} from 'three';
-import {fetchRanges, open, ready, useWorkers} from 'gicodec:entry/index';
+import {fetchRanges, open, useWorkers} from 'gicodec:entry/index';
+
+import sample from 'gicodec:sample';
 
 import {findShown, useVolumes} from './shown.js';
 import {States, addStates} from './states.js';
@@ -12,6 +14,16 @@ async function seekable(source) {
   }
   const stream = source instanceof Response && source.ok ? source.body : source;
   return stream instanceof ReadableStream ? new Response(stream).arrayBuffer() : source;
+}
+
+let warmed = null;
+
+/** Decodes a little while bytes are on their way: engines compile functions when they first run. */
+async function warm() {
+  const player = await open(Uint8Array.from(sample, (one) => one.charCodeAt(0)));
+  await player.next();
+  await player.read(0);
+  player.close();
 }
 
 /** Loads containers (.gic). */
@@ -79,7 +91,7 @@ export class GILoader extends Loader {
     const stop = () => own.abort(all.reason);
     all.addEventListener('abort', stop, {once: true});
     let loaded = 0, made = false;
-    ready.then(() => {}, () => {});  // compiles while bytes are on their way
+    warmed ??= warm().catch(() => {});
     const tell = (bytes, total) => {
       loaded += bytes;
       if (!made) onProgress(new ProgressEvent('progress', {lengthComputable: total > 0, loaded, total}));
