@@ -3,7 +3,7 @@ import {Decoder, GicodecError, open, peek, ready, useWorkers, type Player, type 
 import {connect, type ClientVolume} from 'gicodec/client';
 import {Encoder, Writer, ddgiIrradiance, volumeOfLayout, type VolumeDesc} from 'gicodec/encoder';
 import {
-  GIClient, GILoader, ProbeVolume, ProbeVolumeHelper, captureLightProbeGrid, saveLightProbeGrid, type StateGrid,
+  GIClient, GILoader, ProbeVolume, ProbeVolumeHelper, VolumeLight, captureLightProbeGrid, saveLightProbeGrid, type StateGrid,
 } from 'gicodec/three';
 import type {Camera, Scene, Texture, WebGLRenderer} from 'three';
 import type {OwnBytes} from 'gicodec';
@@ -53,6 +53,7 @@ export function shine(scene: Scene, renderer: WebGLRenderer, camera: Camera): GI
 }
 
 export async function light(scene: Scene, renderer: WebGLRenderer): Promise<OwnBytes> {
+  scene.traverse((object) => object instanceof VolumeLight && console.log(object.boundingBox.max.y));
   const loader = new GILoader().detectSupport(renderer).setWorkerLimit(1);
   loader.setPath('light/').setRequestHeader({authorization: 'x'});
   const grid = await loader.loadAsync('room.gic', ({loaded, total}) => console.log(loaded / total));

@@ -6,3 +6,4 @@ export {GILoader} from './loader.js';
 export {ProbeVolume} from './probe_volume.js';
 export {captureLightProbeGrid, saveLightProbeGrid} from './save.js';
 export {TextureVolume} from './texture_volume.js';
+export {VolumeLight} from './volume_light.js';

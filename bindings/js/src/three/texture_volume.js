@@ -7,7 +7,7 @@ import {hasFormat, makeTexture, setImage} from './texture_formats.js';
 import {Tiles} from './tilings.js';
 
 /** Layouts whose textures are 3D though their blocks are flat. */
-const DEEP = ['bevy', 'three', 'three-float32'];
+const DEEP = ['bevy', 'three', 'three-float32', 'unity-apv', 'unity-apv-l1', 'unreal-vlm'];
 
 /** The numbers of the textures of a volume that a GPU can have; null: it has none. */
 export function plainTextures({firstTexture, textures: number}, textures) {
@@ -37,8 +37,7 @@ export class TextureVolume extends Object3D {
         .applyMatrix4(turnOf(volume.metadata));
     for (const number of plainTextures(volume, textures)) {
       const desc = textures[number];
-      const texture = makeTexture(desc, renderer, DEEP.includes(this.layout) || desc.block[2] > 1 ||
-                                                  (this.layout === 'unreal-vlm' && desc.name === 'Indirection'));
+      const texture = makeTexture(desc, renderer, DEEP.includes(this.layout) || desc.block[2] > 1);
       texture.name = desc.name;
       this.#own.set(number, {texture, desc, tiles: new Tiles(desc)});
       this.textures.set(desc.name, texture);
