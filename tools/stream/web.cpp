@@ -29,7 +29,10 @@ Web::Web(const WebListen& listen, TlsContext certificate, const NetOptions& opti
     : state_(std::make_unique<State>(options)) {
   state_->listen = listen;
   if (!listen.page.empty()) state_->files = WebFiles(listen.page);
-  if (!listen.scene.empty()) state_->files.add("/scene.glb", listen.scene);
+  if (!listen.scene.empty()) {
+    state_->files.add("/scene.glb",
+                      std::exchange(state_->listen.scene, {}));  // which need not be kept twice
+  }
   allow_files(options.links + HalfOpen::kMax + kFiles);
   state_->listener = listen_tcp(listen.address);
   state_->loop = std::make_unique<WebLoop>(*state_, std::move(certificate));

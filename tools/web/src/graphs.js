@@ -2,10 +2,12 @@
 const SECONDS = 60;
 const SERIES = [['Mbps', 'Mbit/s'], ['delay', 'ms later than the earliest'], ['decode', 'ms an update'], ['blocks', 'blocks/s']];
 
+const mean = (list) => (list.length ? list.reduce((a, b) => a + b) / list.length : 0);
+
 export class Graphs {
   #series = new Map();
   #arrivals = [];
-  #second = {bytes: 0, blocks: 0, decode: [], delay: []};
+  #second = {bytes: 0, blocks: 0, decode: []};
   #bytes = 0;
   #timer;
 
@@ -31,26 +33,29 @@ export class Graphs {
     this.#bytes = state.bytes;
     this.#second.blocks += blocks;
     this.#second.decode.push(decodeMs);
-    this.#second.delay.push(this.#behind(state.update));
+    if (state.update < (this.#arrivals.at(-1)?.update ?? 0)) this.#arrivals = [];  // another session
+    this.#arrivals.push({at: performance.now(), update: state.update});
   }
 
-  /** Milliseconds by which an update comes later than the earliest of the last minute would have: updates are evenly spaced. */
-  #behind(update) {
+  /**
+   * Milliseconds by which the updates of the last second came later, in the mean, than the earliest of the last
+   * minute would have: updates are evenly spaced.
+   */
+  #delay() {
     const now = performance.now();
-    if (update < (this.#arrivals.at(-1)?.update ?? 0)) this.#arrivals = [];  // another session
-    this.#arrivals.push({now, update});
-    while (now - this.#arrivals[0].now > 1000 * SECONDS) this.#arrivals.shift();
-    const [first] = this.#arrivals;
-    const interval = update > first.update ? (now - first.now) / (update - first.update) : 0;
-    const late = this.#arrivals.map((one) => one.now - one.update * interval);
-    return late.at(-1) - late.reduce((least, one) => Math.min(least, one), Infinity);
+    this.#arrivals = this.#arrivals.filter(({at}) => now - at <= 1000 * SECONDS);
+    if (this.#arrivals.length < 2) return 0;
+    const [first, last] = [this.#arrivals[0], this.#arrivals.at(-1)];
+    const interval = last.update > first.update ? (last.at - first.at) / (last.update - first.update) : 0;
+    const late = this.#arrivals.map(({at, update}) => at - update * interval);
+    const least = late.reduce((best, one) => Math.min(best, one), Infinity);
+    return mean(late.filter((_, i) => now - this.#arrivals[i].at <= 1000).map((one) => one - least));
   }
 
   #tick() {
-    const mean = (list) => (list.length ? list.reduce((a, b) => a + b) / list.length : 0);
-    const {bytes, blocks, decode, delay} = this.#second;
-    this.#second = {bytes: 0, blocks: 0, decode: [], delay: []};
-    for (const [name, value] of [['Mbps', 8e-6 * bytes], ['delay', mean(delay)], ['decode', mean(decode)], ['blocks', blocks]]) {
+    const {bytes, blocks, decode} = this.#second;
+    this.#second = {bytes: 0, blocks: 0, decode: []};
+    for (const [name, value] of [['Mbps', 8e-6 * bytes], ['delay', this.#delay()], ['decode', mean(decode)], ['blocks', blocks]]) {
       const series = this.#series.get(name);
       series.points.push(value);
       if (series.points.length > SECONDS) series.points.shift();

@@ -113,13 +113,13 @@ export class Stage {
   /** "none", "light" or "age". */
   set probes(kind) {
     this.#probes = kind;
-    this.#helpers.forEach((helper) => helper.dispose());
+    this.#helpers.forEach(({helper}) => helper.dispose());
     this.#helpers = [];
     if (kind === 'none') return;
     for (const volume of this.#volumes()) {
       const helper = volume.isProbeVolume ? new ProbeVolumeHelper(volume, {colors: kind}) : new LitSpheres(volume);
       (volume.isProbeVolume ? volume : this.#scene).add(helper);
-      this.#helpers.push({volume, helper, update: () => helper.update?.(), dispose: () => helper.dispose()});
+      this.#helpers.push({volume, helper});
     }
   }
 
@@ -129,7 +129,7 @@ export class Stage {
     const volumes = this.#volumes();
     const same = volumes.length === this.#helpers.length && volumes.every((volume, i) => this.#helpers[i].volume === volume);
     if (!same) this.probes = this.#probes;  // the server has other volumes
-    else this.#helpers.forEach((helper) => helper.update());
+    else this.#helpers.forEach(({helper}) => helper.update?.());
   }
 
   #draw() {
@@ -146,7 +146,7 @@ export class Stage {
     if (this.#orbit.enabled) this.#orbit.update();
     this.#walk.update(seconds);
     this.onframe();
-    if (this.#probes === 'age') this.#helpers.forEach((helper) => helper.update());
+    if (this.#probes === 'age') this.#helpers.forEach(({helper}) => helper.update?.());
     const comparing = this.mode === 'difference' && this.#others.length > 0;
     this.#show(this.mode !== 'direct', false);
     if (!comparing) return this.#renderer.render(this.#scene, this.#camera);

@@ -18,14 +18,12 @@ export function cubeTextures({metadata, firstTexture}, textures) {
 export class AmbientCubeVolume extends VolumeLight {
   isAmbientCubeVolume = true;
   type = 'AmbientCubeVolume';
-  #renderer;
   #place;
   #desc;
   #tiles;
 
   constructor(volume, textures, renderer) {
     super(volume, renderer, cubeShader);
-    this.#renderer = renderer;
     this.#place = volume.firstTexture;
     this.#desc = textures[this.#place];
     this.#tiles = new Tiles(this.#desc);
@@ -51,16 +49,13 @@ export class AmbientCubeVolume extends VolumeLight {
   /** Shows textures by number. They stay the light's. @internal */
   setTexels(all) {
     setImage(this.texture, all.get(this.#place));
-    uploadAll(this.#renderer, this.texture);
+    uploadAll(this.renderer, this.texture);
   }
 
   /** Shows what changed in blocks of the texture. Returns the bytes that went to the GPU at once. @internal */
   setBlocks(texture, blocks) {
-    return uploadBlocks(this.#renderer, this.texture, this.#desc, this.#tiles, blocks);
+    return uploadBlocks(this.renderer, this.texture, this.#desc, this.#tiles, blocks);
   }
-
-  /** @internal */
-  setGeometry() {}
 
   dispose() {
     this.texture.dispose();

@@ -131,7 +131,7 @@ export class GIClient extends EventDispatcher {
     const before = this.state;
     this.state = state;
     let uploaded = 0, blocks = 0;
-    for (const {id, geometry} of geometries) this.#volumes.get(id)?.shown.setGeometry(geometry);
+    for (const {id, geometry} of geometries) this.#volumes.get(id)?.shown.setGeometry?.(geometry);
     for (const {id, texture, blocks: changed, bytes} of parts) {
       const volume = this.#volumes.get(id);
       if (!volume) continue;

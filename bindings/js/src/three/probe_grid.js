@@ -88,7 +88,7 @@ export async function makeProbeGrid(volume, textures, renderer, {half: wanted = 
   };
   const dispose = grid.dispose.bind(grid);
   Object.defineProperties(grid, {
-    blends: {value: true}, setTexels: {value: setTexels}, setBlocks: {value: setBlocks}, setGeometry: {value() {}},
+    blends: {value: true}, setTexels: {value: setTexels}, setBlocks: {value: setBlocks},
     dispose: {configurable: true, value() {
       shown.dispose();
       if (grid.texture === shown) grid.texture = null;

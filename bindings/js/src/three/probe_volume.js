@@ -35,7 +35,6 @@ function isLinear(volume, texture) {
 export class ProbeVolume extends VolumeLight {
   isProbeVolume = true;
   type = 'ProbeVolume';
-  #renderer;
   #shown;  // {name, number, desc, tiles} of both textures
 
   constructor(volume, textures, renderer) {
@@ -47,7 +46,6 @@ export class ProbeVolume extends VolumeLight {
     /** What shaders differ in. */
     const kind = {words: formatOf(textures[color].format).words ?? null, linear: isLinear(volume, textures[color])};
     super(volume, renderer, {key: `probes ${kind.words} ${kind.linear}`, samplers: 3, functions: (id) => probeFunctions(id, kind)});
-    this.#renderer = renderer;
     /** @internal */
     this.kind = kind;
     this.#shown = [['Color', color], ['Visibility', visibility]].map(([name, number]) => (
@@ -105,7 +103,7 @@ export class ProbeVolume extends VolumeLight {
   setTexels(all) {
     for (const {name, number} of this.#shown) {
       setImage(this.uniforms[name].value, all.get(number));
-      uploadAll(this.#renderer, this.uniforms[name].value);
+      uploadAll(this.renderer, this.uniforms[name].value);
     }
     this.#settle(Array.from({length: this.#shown[1].desc.blocks}, (_, block) => block));
     this.changedAt.fill(performance.now());
@@ -118,7 +116,7 @@ export class ProbeVolume extends VolumeLight {
     const now = performance.now();
     for (const block of blocks) this.changedAt[block] = now;
     if (found.name === 'Visibility') this.#settle(blocks);
-    return uploadBlocks(this.#renderer, this.uniforms[found.name].value, found.desc, found.tiles, blocks);
+    return uploadBlocks(this.renderer, this.uniforms[found.name].value, found.desc, found.tiles, blocks);
   }
 
   /** A probe is active unless its block of visibility is zero. */
@@ -132,7 +130,7 @@ export class ProbeVolume extends VolumeLight {
       });
       active.image.data[block] = any === 0 ? 0 : 255;
     }
-    uploadAll(this.#renderer, active);
+    uploadAll(this.renderer, active);
   }
 
   /** Says where the probes stand, for a volume that scrolls. @internal */

@@ -8,7 +8,7 @@ import {TextureVolume, plainTextures} from './texture_volume.js';
  * `textures(volume, all)`: the numbers of those that it needs, or null where it does not fit. What is made is
  * an object of three.js that has setTexels(all, second, part), which shows textures by number, and with
  * `blends` a share of others; setBlocks(texture, blocks, all), which shows what changed of them;
- * setGeometry(geometry) and dispose().
+ * dispose(); and setGeometry(geometry) where it can scroll.
  */
 const KINDS = [
   {textures: gridTextures, make: makeProbeGrid},

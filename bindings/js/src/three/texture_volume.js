@@ -87,9 +87,6 @@ export class TextureVolume extends Object3D {
     return uploadBlocks(this.#renderer, own.texture, own.desc, own.tiles, blocks);
   }
 
-  /** @internal */
-  setGeometry() {}
-
   dispose() {
     this.removeFromParent();
     for (const {texture} of [...this.#own.values(), ...this.#slices]) texture.dispose();

@@ -27,7 +27,6 @@ export class VolumeLight extends Light {
   autoLight = true;
   #id = takeNumber();
   #shader;
-  #renderer;
   #refused = false;
   #materials = new Map();  // that it lights, and what forgets each
 
@@ -37,7 +36,8 @@ export class VolumeLight extends Light {
     this.name = volume.name;
     this.autoLight = !renderer?.isWebGPURenderer;
     this.#shader = shader;
-    this.#renderer = renderer;
+    /** @internal */
+    this.renderer = renderer;
     /** From the volume's axes and units to three.js's. @internal */
     this.turn = turnOf(volume.metadata);
     /** Of both kinds of shaders, by name. @internal */
@@ -61,7 +61,7 @@ export class VolumeLight extends Light {
       for (const one of Array.isArray(material) ? material : [material]) {
         if (!one || this.#materials.has(one) || !LIT.some((kind) => one[kind])) continue;
         const uniforms = Object.entries(this.uniforms).map(([name, value]) => [`gi${this.#id}${name}`, value]);
-        const most = this.#renderer?.capabilities?.maxTextures ?? LEAST_UNITS;
+        const most = this.renderer?.capabilities?.maxTextures ?? LEAST_UNITS;
         if (!patchMaterial(one, this.#id, this.#shader, Object.fromEntries(uniforms), most)) {
           this.refuse(most);
           this.#materials.set(one, null);
