@@ -275,7 +275,6 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
   for (auto& entry : entries) {
     const std::size_t begin = out.size();
     if (is({&entry.type, 1}, EntryType::index)) {
-      if (entry.body.size() >= sizeof part) std::memcpy(entry.body.data(), &part, sizeof part);
       put_offset(entry.body, begin);
       part = begin;
     }

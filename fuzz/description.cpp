@@ -15,11 +15,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   } else {
     constexpr PacketRule kRules[] = {{0, true}, {4, true}, {kMaxBlocks, false}};
     constexpr std::uint64_t kFirst = 40, kOffset = 0x3FFFFFFF;
-    const auto head = read_index_part_head(body.span());
-    std::vector<SeekEntry> index;
-    if (read_index_part(body.span(), kRules, kFirst, kOffset, index) != Status::ok) return 0;
-    fuzz::check(head.ok() && head->packets == index.size(), "a head says how many packets follow");
-    write_index_part(index, head->before, kOffset, again);
+    const auto part = read_index_part(body.span(), kRules, kFirst, kOffset);
+    if (!part) return 0;
+    write_index_part(*part, kOffset, again);
   }
   fuzz::check(fuzz::same(again, body.span()), "writing is the inverse of reading");
   return 0;

@@ -210,9 +210,11 @@ void add_transforms(Corpus& corpus, std::mt19937& random) {
   }
   Bytes index{std::byte{1}};
   Bytes part;
-  write_index_part(
-      std::vector<SeekEntry>{{0, 40, 0, 0, true}, {0, 90, 1, 1, true}, {300, 1000, 7, 2, false}}, 0,
-      0x3FFFFFFF, part);
+  write_index_part({{{300, 900, 0, 0, true}, {300, 950, 1, 1, true}, {301, 1000, 7, 2, false}},
+                    {{1, 1}, {2, 1}},
+                    0,
+                    {{100, 40, 0, {}}, {200, 99, 2, {{1, 1}}}, {400, 50, 7, {}}, {460, 33, 7, {}}}},
+                   0x3FFFFFFF, part);
   append(index, part);
   corpus.add("description", index);
 }

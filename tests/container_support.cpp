@@ -204,17 +204,22 @@ Status Player::play(ContainerReader& reader, std::uint64_t last_frame) {
     const Status more = reader.next(packet);
     if (more != Status::ok && more != Status::end) return more;
     if (more == Status::end || packet.frame > last_frame) return Status::ok;
-    const auto parts = parse_packet(packet.bytes);
-    if (!parts) return parts.status();
-    if (const Status sum = verify_checksum(packet.bytes); sum != Status::ok) return sum;
-    const std::uint64_t key = region_key(packet.texture_id, packet.region);
-    if (!packet.keyframe) {
-      const auto before = states.find(key);
-      if (before == states.end() || before->second != parts->base) return Status::reference_missing;
-    }
-    states[key] = packet_checksum(packet.bytes);
-    ++packets;
+    if (const Status status = take(packet); status != Status::ok) return status;
   }
+}
+
+Status Player::take(const ContainerPacket& packet) {
+  const auto parts = parse_packet(packet.bytes);
+  if (!parts) return parts.status();
+  if (const Status sum = verify_checksum(packet.bytes); sum != Status::ok) return sum;
+  const std::uint64_t key = region_key(packet.texture_id, packet.region);
+  if (!packet.keyframe) {
+    const auto before = states.find(key);
+    if (before == states.end() || before->second != parts->base) return Status::reference_missing;
+  }
+  states[key] = packet_checksum(packet.bytes);
+  ++packets;
+  return Status::ok;
 }
 
 }  // namespace gicodec::test

@@ -161,6 +161,8 @@ class Player {
  public:
   /// Frame after frame up to and including `last_frame`. Status::ok there or at the end.
   Status play(ContainerReader& reader, std::uint64_t last_frame);
+  /// One packet.
+  Status take(const ContainerPacket& packet);
   States states;
   std::size_t packets = 0;
 };

@@ -32,7 +32,7 @@ std::vector<std::byte> example_bytes() {
 
 TEST(FormatPage, ExampleDecodesToWhatItSays) {
   const auto bytes = example_bytes();
-  ASSERT_EQ(bytes.size(), 190U);
+  ASSERT_EQ(bytes.size(), 192U);
   MemorySource source(bytes);
   auto reader = ContainerReader::open(source);
   ASSERT_TRUE(reader.ok());

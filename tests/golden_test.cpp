@@ -246,7 +246,7 @@ constexpr Other kContainers[] = {
     {"lossy", Status::ok, 2, true},
     {"index", Status::ok, 2, true},
     {"index_order", Status::ok, 2},
-    {"index_before", Status::ok, 2},
+    {"index_directory", Status::ok, 2},
     {"bad_index_place", Status::corrupt, 2},
     {"index_texture", Status::ok, 2},
     {"index_flags", Status::ok, 2},

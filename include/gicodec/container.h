@@ -131,6 +131,14 @@ struct ContainerPacket {
   std::vector<std::byte> bytes;
 };
 
+/// What the index lists of a texture, or of a region of one that is cut.
+struct ListedPart {
+  TextureRegion part;
+  std::uint64_t first_frame = 0, last_frame = 0;
+  std::uint64_t packets = 0, keyframes = 0;
+  std::uint64_t bytes = 0, keyframe_bytes = 0;  ///< in the file, of what surrounds packets too
+};
+
 /// The version that a container's first bytes name.
 struct ContainerVersion {
   static constexpr std::size_t kBytes = 10;  ///< where it ends
@@ -162,7 +170,7 @@ class ContainerReader {
   /// file was cut off or is growing: all packets before are sound, and if the source can seek, a
   /// later call finds what was added. After any other error only seek() goes on.
   [[nodiscard]] Status next(ContainerPacket& packet);
-  /// The frame of the packet that next() will give, if the index lists it.
+  /// The frame of the packet that next() will give, or one before it, if the index says it.
   [[nodiscard]] std::optional<std::uint64_t> next_frame() noexcept;
 
   /// Limits next() to packets of these; it skips others without reading them if the index lists
@@ -181,6 +189,9 @@ class ContainerReader {
   Status seek(std::uint64_t frame);
   /// The numbers of all frames, ascending, as seek() takes them. unknown_frame unless seekable().
   [[nodiscard]] Result<std::vector<std::uint64_t>> frames();
+  /// What the index lists, by texture and region; reads no packets but those of a growing file that
+  /// its index does not list yet. unknown_frame unless seekable().
+  [[nodiscard]] Result<std::vector<ListedPart>> listed();
 
   ContainerReader(ContainerReader&&) noexcept;
   ContainerReader& operator=(ContainerReader&&) noexcept;

@@ -21,6 +21,11 @@ class Sink {
   virtual Status write(std::span<const std::byte> bytes) = 0;
 };
 
+/// Bytes of a source.
+struct ByteRange {
+  std::uint64_t offset = 0, size = 0;
+};
+
 /// Gives bytes.
 class Source {
  public:
@@ -32,6 +37,9 @@ class Source {
   [[nodiscard]] virtual std::optional<std::uint64_t> size() const { return std::nullopt; }
   /// The next read() begins at `offset`. Precondition: size() has a value, at least `offset`.
   virtual Status seek(std::uint64_t /*offset*/) { return Status::io_failed; }
+  /// Says which bytes will be read next, so that a source that is far away brings them together.
+  /// May be called with none. False: reading has no delay here, and nobody need call it again.
+  virtual bool prefetch(std::span<const ByteRange> /*ranges*/) { return false; }
 };
 
 /// Reads from memory, which must outlive it.

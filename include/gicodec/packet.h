@@ -45,7 +45,7 @@ struct DecodeLimits {
   std::uint64_t max_description_bytes = std::uint64_t{1} << 20;
   /// Metadata of a container beside its description, unpacked, of all textures together.
   std::uint64_t max_metadata_bytes = std::uint64_t{64} << 20;
-  std::uint64_t max_index_bytes = std::uint64_t{64} << 20;  ///< seek index of a container
+  std::uint64_t max_index_bytes = std::uint64_t{64} << 20;  ///< index parts read at once
 };
 
 }  // namespace gicodec

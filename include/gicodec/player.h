@@ -47,6 +47,9 @@ class ContainerPlayer {
   /// the player does not read packets of other textures, unless the selected regions are very many.
   /// unknown_texture; out_of_order after next(), skip() or seek().
   Status select(std::span<const std::uint8_t> textures);
+  /// The same of single regions of textures that are cut: the blocks of others stay zero. Errors as
+  /// above; unknown_region.
+  Status select(std::span<const TextureRegion> parts);
   /// Sets the layout of this texture's views, instead of that of description(). unknown_texture;
   /// out_of_order after the texture's first packet; errors of validate().
   Status set_layout(std::uint8_t texture, const Layout& layout);
@@ -72,6 +75,8 @@ class ContainerPlayer {
   [[nodiscard]] bool seekable() const noexcept;
   /// As ContainerReader::frames().
   [[nodiscard]] Result<std::vector<std::uint64_t>> frames();
+  /// As ContainerReader::listed().
+  [[nodiscard]] Result<std::vector<ListedPart>> listed();
   /// As ContainerReader::metadata().
   [[nodiscard]] Result<Metadata> metadata(std::uint8_t texture);
   /// True once the player has found the container's end mark.

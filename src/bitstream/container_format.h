@@ -78,25 +78,47 @@ struct SeekEntry {
   friend constexpr bool operator==(const SeekEntry&, const SeekEntry&) = default;
 };
 
+/// Index parts that follow one another, counted back from a part: the run begins `gap` parts before
+/// it, or before the end of the run before.
+struct PartRun {
+  std::uint64_t gap = 1, length = 1;
+  friend constexpr bool operator==(const PartRun&, const PartRun&) = default;
+};
+/// Runs that a part may state.
+inline constexpr std::size_t kMaxPartRuns = 8;
+
+/// An index part as those behind it list it.
+struct PartPlace {
+  std::uint64_t offset = 0;  ///< of its entry
+  std::uint64_t size = 0;    ///< bytes of its entry
+  std::uint64_t frame = 0;   ///< of its first packet
+  /// The parts before it with the keyframes on which its packets build.
+  std::vector<PartRun> needs;
+
+  [[nodiscard]] std::uint64_t end() const noexcept { return offset + size; }
+};
+
+struct IndexPart {
+  std::vector<SeekEntry> packets;  ///< since the part before
+  std::vector<PartRun> needs;
+  std::uint64_t directory = 0;   ///< offset of the last part that lists all before it; 0: this one
+  std::vector<PartPlace> parts;  ///< those from the directory on; of a directory all
+};
+
 /// The last bytes of an index part, behind the offset of its entry.
 inline constexpr std::array<std::uint8_t, 8> kIndexMark{'I', 'N', 'D', 'E', 'X', 'P', 'A', 'R'};
 inline constexpr std::size_t kIndexTail = 8 + kIndexMark.size();
 inline constexpr std::size_t kMinSeekEntry = 5;    ///< least bytes of a packet in a part
-inline constexpr std::size_t kPartPackets = 1024;  ///< packets per part that this library writes
+inline constexpr std::size_t kPartPackets = 1024;  ///< least packets per part that add() writes
 
-/// Appends the body of the part at `offset`; `before` is the offset of the previous part, or 0.
-void write_index_part(std::span<const SeekEntry> packets, std::uint64_t before,
-                      std::uint64_t offset, std::vector<std::byte>& out);
-/// The first fields of a part's body.
-struct IndexPartHead {
-  std::uint64_t before = 0, packets = 0;
-};
-[[nodiscard]] Result<IndexPartHead> read_index_part_head(std::span<const std::byte> body);
+/// Appends the body of the part at `offset`.
+void write_index_part(const IndexPart& part, std::uint64_t offset, std::vector<std::byte>& out);
 /// True if `tail`, the last kIndexTail bytes of a body, belongs to the part at `offset`.
 [[nodiscard]] bool is_index_tail(std::span<const std::byte> tail, std::uint64_t offset) noexcept;
-/// Appends the packets of the part at `offset` to `index`. corrupt unless their entries are at
-/// `begin` or later and before the part, and their frames not before those in `index`.
-Status read_index_part(std::span<const std::byte> body, std::span<const PacketRule> rules,
-                       std::uint64_t begin, std::uint64_t offset, std::vector<SeekEntry>& index);
+/// Reads the part at `offset`. corrupt unless packets and parts are in order and before it, the
+/// packets from `begin` on.
+[[nodiscard]] Result<IndexPart> read_index_part(std::span<const std::byte> body,
+                                                std::span<const PacketRule> rules,
+                                                std::uint64_t begin, std::uint64_t offset);
 
 }  // namespace gicodec

@@ -5,7 +5,8 @@
 #include "bitstream/metadata_entries.h"
 
 #include <algorithm>
-#include <iterator>
+#include <map>
+#include <optional>
 #include <utility>
 
 namespace gicodec {
@@ -17,6 +18,12 @@ struct Start {
 };
 
 bool by_key(const Start& start, std::uint64_t key) { return start.key < key; }
+
+/// Bytes of packets that a distant source is told of at once, beside those of a frame: at first,
+/// in the end, and at most.
+constexpr std::uint64_t kFirstPlan = std::uint64_t{64} << 10;
+constexpr std::uint64_t kPlan = std::uint64_t{2} << 20;
+constexpr std::uint64_t kMostPlan = std::uint64_t{16} << 20;
 
 }  // namespace
 
@@ -32,20 +39,24 @@ struct ContainerReader::State {
     const auto start = std::lower_bound(starts.begin(), starts.end(), key, by_key);
     return start == starts.end() || start->key != key || packet.offset >= start->offset;
   }
-  /// Moves past unwanted packets that the index lists. Returns the packet at the new position, if
-  /// the index lists it.
-  std::optional<SeekEntry> follow_index();
-  /// The first packet that the index lists at the position or behind it.
-  [[nodiscard]] std::vector<SeekEntry>::const_iterator next_listed() const noexcept {
-    const auto& packets = index.packets();
-    return std::lower_bound(
-        packets.begin(), packets.end(), position,
-        [](const SeekEntry& packet, std::uint64_t offset) { return packet.offset < offset; });
+  /// True if next() passes over packets.
+  [[nodiscard]] bool skips() noexcept {
+    if (!starts.empty() && position > last_start) starts.clear();
+    return seekable && (!selected.empty() || !starts.empty()) && position < index.end();
   }
-  std::optional<std::uint64_t> next_frame();
+  /// Moves past unwanted packets that the index lists, and sets `listed` to the packet at the new
+  /// position, if the index lists it.
+  Status follow_index(std::optional<SeekEntry>& listed);
+  /// Tells a distant source which packets next() will read.
+  Status plan();
+  /// Of a damaged part of the index: goes on without index. False for other errors.
+  bool give_up_index(Status status) noexcept;
   Status next(ContainerPacket& packet);
   Status read_next(FileEntry& entry);
   Status seek(std::uint64_t frame);
+  /// Calls visit(packet, bytes) for what the index lists, without reading packets.
+  template <typename Visit>
+  Status for_each_listed(const Visit& visit);
   [[nodiscard]] std::vector<Start> starts_of(std::vector<SeekEntry> keyframes) const;
 
   EntryReader reader;
@@ -57,6 +68,10 @@ struct ContainerReader::State {
   std::vector<std::uint64_t> selected;  ///< keys, ascending; empty: all
   std::vector<Start> starts;            ///< ascending by key; cleared once all are passed
   std::uint64_t last_start = 0;
+  std::uint64_t planned = 0;        ///< plan() told of all packets before this offset
+  std::uint64_t planned_frame = 0;  ///< the next plan reaches as far as this frame
+  std::uint64_t plan_bytes = kFirstPlan;
+  bool distant = false;
   bool seekable = false;
   bool finished = false;
   bool ended = false;
@@ -91,6 +106,7 @@ Result<ContainerReader> ContainerReader::open(Source& source, const DecodeLimits
     if (source.size()) {
       // Neither is an error yet: next() and metadata() report damage, and packets can be read in
       // order without an index.
+      state->distant = state->reader.prefetch({});
       (void)state->metadata.find(state->reader);
       state->seekable = state->index.load(state->reader, state->metadata.end()) == Status::ok;
       state->finished = state->index.finished();
@@ -100,16 +116,67 @@ Result<ContainerReader> ContainerReader::open(Source& source, const DecodeLimits
   });
 }
 
-std::optional<SeekEntry> ContainerReader::State::follow_index() {
-  if (!starts.empty() && position > last_start) starts.clear();
-  const bool all = selected.empty() && starts.empty();
-  if (!seekable || all || position >= index.end()) return std::nullopt;
-  const auto& packets = index.packets();
-  const auto it = std::find_if(next_listed(), packets.end(),
-                               [&](const SeekEntry& packet) { return is_wanted(packet); });
-  position = it == packets.end() ? index.end() : it->offset;
-  if (it == packets.end()) return std::nullopt;
-  return *it;
+bool ContainerReader::State::give_up_index(Status status) noexcept {
+  const bool damaged = status == Status::corrupt || status == Status::checksum_mismatch ||
+                       status == Status::limit_exceeded;
+  if (!damaged) return false;
+  seekable = false;
+  index = {};
+  return true;
+}
+
+Status ContainerReader::State::follow_index(std::optional<SeekEntry>& listed) {
+  while (skips()) {
+    const auto packets = index.packets_from(reader, position);
+    if (!packets) return give_up_index(packets.status()) ? Status::ok : packets.status();
+    const auto it = std::find_if(packets->begin(), packets->end(),
+                                 [&](const SeekEntry& packet) { return is_wanted(packet); });
+    if (it != packets->end()) {
+      listed = *it;
+      position = it->offset;
+      return Status::ok;
+    }
+    position = packets->empty() ? index.end() : index.end_of(packets->back());
+  }
+  return Status::ok;
+}
+
+Status ContainerReader::State::plan() {
+  if (!distant || position < planned) return Status::ok;
+  std::vector<ByteRange> ranges;
+  const auto add = [&](std::uint64_t offset, std::uint64_t end) {
+    if (!ranges.empty() && ranges.back().offset + ranges.back().size == offset) {
+      ranges.back().size += end - offset;
+    } else {
+      ranges.push_back({offset, end - offset});
+    }
+  };
+  std::uint64_t bytes = 0, beyond = 0;
+  std::uint64_t at = position, frame = planned_frame;
+  auto first = seekable ? index.packets_from(reader, at) : ContainerIndex::Packets{};
+  if (!first && !give_up_index(first.status())) return first.status();
+  auto packets = first ? *first : ContainerIndex::Packets{};
+  // Behind these, what other parts list goes along if they are there.
+  for (bool more = true; more && !packets.empty(); packets = index.held_from(at)) {
+    for (const SeekEntry& packet : packets) {
+      more = bytes < kMostPlan && (packet.frame <= frame || beyond < plan_bytes);
+      if (!more) break;
+      frame = std::max(frame, bytes == 0 ? packet.frame : frame);
+      at = index.end_of(packet);
+      if (!is_wanted(packet)) continue;
+      add(packet.offset, at);
+      bytes += at - packet.offset;
+      if (packet.frame > frame) beyond += at - packet.offset;
+    }
+  }
+  if (ranges.empty() && seekable) at = index.end();
+  // What the index does not list is read entry by entry.
+  const std::uint64_t total = *reader.size();
+  if (at >= index.end() && at < total) add(at, std::min(total, at + kPlan));
+  planned = at >= index.end() ? std::min(total, at + kPlan) : at;
+  plan_bytes = std::min(2 * plan_bytes, kPlan);
+  (void)reader.prefetch(ranges);
+  return Status::ok;
 }
 
 /// Reads the entry at `position`; passes over metadata.
@@ -129,21 +196,16 @@ Status ContainerReader::State::read_next(FileEntry& entry) {
   return late ? Status::corrupt : status;
 }
 
-std::optional<std::uint64_t> ContainerReader::State::next_frame() {
-  if (ended || !seekable) return std::nullopt;
-  if (const auto listed = follow_index()) return listed->frame;
-  const auto at = next_listed();
-  if (at == index.packets().end() || at->offset != position) return std::nullopt;
-  return at->frame;
-}
-
 Status ContainerReader::State::next(ContainerPacket& packet) {
   while (!ended) {
-    const auto listed = follow_index();
+    std::optional<SeekEntry> listed;
+    Status status = follow_index(listed);
+    if (status == Status::ok) status = plan();
+    if (status != Status::ok) return status;
     const bool repeatable = reader.size().has_value();
     ended = !repeatable;  // A pipe cannot repeat a partial read.
     FileEntry entry;
-    Status status = read_next(entry);
+    status = read_next(entry);
     const bool is_packet = entry.is(EntryType::packet);
     if (status == Status::ok) {
       const bool other = listed && !(is_packet && entry.packet == *listed);
@@ -207,33 +269,41 @@ std::vector<Start> ContainerReader::State::starts_of(std::vector<SeekEntry> keyf
 Status ContainerReader::State::seek(std::uint64_t frame) {
   if (!seekable) return Status::unknown_frame;
   if (const Status status = index.extend(reader); status != Status::ok) return status;
-  const auto& packets = index.packets();
-  const auto first = std::lower_bound(
-      packets.begin(), packets.end(), frame,
-      [](const SeekEntry& packet, std::uint64_t wanted) { return packet.frame < wanted; });
-  if (first == packets.end() || first->frame != frame) return Status::unknown_frame;
-  const auto end = std::upper_bound(
-      first, packets.end(), frame,
-      [](std::uint64_t wanted, const SeekEntry& packet) { return wanted < packet.frame; });
-
-  const auto counts = [&](const SeekEntry& packet) {
-    return packet.keyframe && is_selected(packet.key());
-  };
+  const auto lists = index.packets_for(reader, frame);
+  if (!lists) return give_up_index(lists.status()) ? Status::unknown_frame : lists.status();
   std::vector<SeekEntry> keyframes;
-  keyframes.reserve(static_cast<std::size_t>(std::count_if(packets.begin(), end, counts)));
-  std::copy_if(packets.begin(), end, std::back_inserter(keyframes), counts);
+  std::optional<std::uint64_t> first;
+  for (const auto& list : *lists) {
+    for (const SeekEntry& packet : list) {
+      if (packet.frame > frame) break;
+      if (packet.frame == frame && !first) first = packet.offset;
+      if (packet.keyframe && is_selected(packet.key())) keyframes.push_back(packet);
+    }
+  }
+  if (!first) return Status::unknown_frame;
   std::vector<Start> found = starts_of(std::move(keyframes));
 
-  position = first->offset;
+  position = *first;
   last_start = 0;
   for (const Start& start : found) {
     position = std::min(position, start.offset);
     last_start = std::max(last_start, start.offset);
   }
   starts = std::move(found);
+  planned = 0;
+  planned_frame = frame;
+  plan_bytes = kFirstPlan;
   last_frame = 0;
   ended = false;
   return Status::ok;
+}
+
+template <typename Visit>
+Status ContainerReader::State::for_each_listed(const Visit& visit) {
+  if (!seekable) return Status::unknown_frame;
+  Status status = index.extend(reader);
+  if (status == Status::ok) status = index.for_each(reader, visit);
+  return give_up_index(status) ? Status::unknown_frame : status;
 }
 
 Result<Metadata> ContainerReader::metadata(std::uint8_t texture_id) {
@@ -247,7 +317,21 @@ Result<Metadata> ContainerReader::metadata(std::uint8_t texture_id) {
   });
 }
 
-std::optional<std::uint64_t> ContainerReader::next_frame() noexcept { return state_->next_frame(); }
+std::optional<std::uint64_t> ContainerReader::next_frame() noexcept {
+  State& state = *state_;
+  if (state.ended || !state.seekable) return std::nullopt;
+  const bool skips = state.skips();
+  for (std::uint64_t at = state.position;;) {
+    const auto packets = state.index.held_from(at);
+    if (packets.empty()) return state.index.least_frame(at);
+    if (!skips && packets.front().offset != at && !state.index.is_part(at)) return std::nullopt;
+    const auto it = std::find_if(packets.begin(), packets.end(), [&](const SeekEntry& packet) {
+      return !skips || state.is_wanted(packet);
+    });
+    if (it != packets.end()) return it->frame;
+    at = state.index.end_of(packets.back());
+  }
+}
 
 Status ContainerReader::next(ContainerPacket& packet) {
   return guarded([&] { return state_->next(packet); });
@@ -259,14 +343,36 @@ Status ContainerReader::seek(std::uint64_t frame) {
 
 Result<std::vector<std::uint64_t>> ContainerReader::frames() {
   return guarded([&]() -> Result<std::vector<std::uint64_t>> {
-    if (!state_->seekable) return Status::unknown_frame;
-    const Status status = state_->index.extend(state_->reader);
-    if (status != Status::ok) return status;
     std::vector<std::uint64_t> frames;
-    for (const SeekEntry& packet : state_->index.packets()) {
+    const Status status = state_->for_each_listed([&](const SeekEntry& packet, std::uint64_t) {
       if (frames.empty() || frames.back() != packet.frame) frames.push_back(packet.frame);
-    }
+    });
+    if (status != Status::ok) return status;
     return frames;
+  });
+}
+
+Result<std::vector<ListedPart>> ContainerReader::listed() {
+  return guarded([&]() -> Result<std::vector<ListedPart>> {
+    std::map<std::uint64_t, ListedPart> parts;
+    const Status status =
+        state_->for_each_listed([&](const SeekEntry& packet, std::uint64_t bytes) {
+          ListedPart& part = parts[packet.key()];
+          if (part.packets++ == 0) {
+            part.part = {packet.texture_id, packet.region};
+            part.first_frame = packet.frame;
+          }
+          part.last_frame = packet.frame;
+          part.bytes += bytes;
+          if (!packet.keyframe) return;
+          ++part.keyframes;
+          part.keyframe_bytes += bytes;
+        });
+    if (status != Status::ok) return status;
+    std::vector<ListedPart> list;
+    list.reserve(parts.size());
+    for (const auto& [key, part] : parts) list.push_back(part);
+    return list;
   });
 }
 
@@ -283,6 +389,8 @@ Status ContainerReader::select(std::span<const TextureRegion> wanted) {
     std::sort(keys.begin(), keys.end());
     state_->selected = std::move(keys);
     state_->starts.clear();
+    state_->index.everything();
+    state_->planned = 0;
     return Status::ok;
   });
 }

@@ -6,9 +6,11 @@
 #include "bitstream/container_format.h"
 #include "bitstream/container_metadata.h"
 #include "bitstream/description.h"
+#include "bitstream/index_writer.h"
 #include "bitstream/packet.h"
 #include "bitstream/region_field.h"
 
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -20,11 +22,11 @@ struct ContainerWriter::State {
     if (status == Status::ok) written += entries.size();
     return status;
   }
-  /// Appends the index part of these packets to `out`; returns its offset in the file.
-  std::uint64_t append_part(std::span<const SeekEntry> packets, std::vector<std::byte>& out) const {
+  /// Appends an index part to `out`; returns its offset in the file.
+  std::uint64_t append_part(const IndexPart& part, std::vector<std::byte>& out) const {
     const std::uint64_t offset = written + out.size();
     std::vector<std::byte> body;
-    write_index_part(packets, last_part, offset, body);
+    write_index_part(part, offset, body);
     append_entry(EntryType::index, {}, body, out);
     return offset;
   }
@@ -37,8 +39,7 @@ struct ContainerWriter::State {
   std::vector<TextureDesc> textures;
   std::vector<Grid> region_sizes;
   std::uint64_t written = 0;
-  std::uint64_t last_part = 0;       ///< offset of the last index part; 0 if there is none
-  std::vector<SeekEntry> unlisted;   ///< packets since that part
+  std::optional<IndexWriter> index;
   int last_metadata = -1;            ///< the last texture with a metadata entry
   std::uint64_t metadata_bytes = 0;  ///< of all metadata entries, unpacked
   std::uint64_t last_frame = 0;
@@ -78,7 +79,7 @@ Result<ContainerWriter> ContainerWriter::create(Sink& sink, const ContainerDescr
       state->textures.push_back(texture.desc);
       state->region_sizes.push_back(description.volumes[texture.volume].region);
     }
-    state->unlisted.reserve(kPartPackets);
+    state->index.emplace(description);
     if (const Status status = state->write(start); status != Status::ok) return status;
     return ContainerWriter(std::move(state));
   });
@@ -118,19 +119,13 @@ Status ContainerWriter::State::add(std::uint64_t frame, std::span<const std::byt
   fields.varint(frame);
   fields.varint(to_region_field(region));
   append_entry(EntryType::packet, head, packet, out);
-  std::uint64_t part = 0;
-  if (unlisted.size() + 1 == kPartPackets) {
-    std::vector<SeekEntry> all(unlisted);
-    all.push_back(entry);
-    part = append_part(all, out);
-  }
+  index->make_room(entry);
+  const std::size_t packet_bytes = out.size();
+  const bool due = index->is_due(1);
+  const std::uint64_t part = due ? append_part(index->next_part(&entry, false), out) : 0;
   if (const Status status = write(out); status != Status::ok) return status;
-  if (part != 0) {
-    last_part = part;
-    unlisted.clear();
-  } else {
-    unlisted.push_back(entry);
-  }
+  index->add(entry);
+  if (due) index->close(part, out.size() - packet_bytes);
   if (same_frame) {
     in_frame.merge(keys);
   } else {
@@ -173,12 +168,11 @@ Status ContainerWriter::flush() {
   return guarded([&]() -> Status {
     State& state = *state_;
     if (state.ended) return Status::out_of_order;
-    if (state.unlisted.empty()) return Status::ok;
+    if (!state.index->is_worth_a_part()) return Status::ok;
     std::vector<std::byte> out;
-    const std::uint64_t part = state.append_part(state.unlisted, out);
+    const std::uint64_t part = state.append_part(state.index->next_part(nullptr, false), out);
     if (const Status status = state.write(out); status != Status::ok) return status;
-    state.last_part = part;
-    state.unlisted.clear();
+    state.index->close(part, out.size());
     return Status::ok;
   });
 }
@@ -188,8 +182,10 @@ Status ContainerWriter::finish() {
     State& state = *state_;
     if (state.ended) return Status::out_of_order;
     std::vector<std::byte> end, out;
-    std::uint64_t last = state.last_part;
-    if (!state.unlisted.empty()) last = state.append_part(state.unlisted, out);
+    std::uint64_t last = state.index->last_part();
+    if (!state.index->is_complete()) {
+      last = state.append_part(state.index->next_part(nullptr, true), out);
+    }
     ByteWriter(end).fixed(last);
     append_entry(EntryType::end, {}, end, out);
     const Status status = state.write(out);

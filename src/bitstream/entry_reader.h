@@ -42,6 +42,11 @@ class EntryReader {
   /// nullopt if the source cannot seek; entries must then be read in order.
   [[nodiscard]] std::optional<std::uint64_t> size() const { return source_->size(); }
 
+  /// As Source::prefetch().
+  [[nodiscard]] bool prefetch(std::span<const ByteRange> ranges) {
+    return source_->prefetch(ranges);
+  }
+
   /// Reads magic and version. Errors: not_gicodec, truncated, unsupported_version,
   /// unsupported_feature.
   Status file_head();

@@ -38,6 +38,12 @@ class PlayerSource final : public Source {
     return given_.seek == nullptr ? Status::io_failed
                                   : status_of_caller(given_.seek(given_.self, offset));
   }
+  bool prefetch(std::span<const ByteRange> ranges) override {
+    if (given_.prefetch == nullptr) return false;
+    static_assert(sizeof(ByteRange) == sizeof(gicodec_range));
+    const auto* const given = reinterpret_cast<const gicodec_range*>(ranges.data());
+    return given_.prefetch(given_.self, given, ranges.size()) != 0;
+  }
 
  private:
   gicodec_source given_{};
@@ -163,6 +169,10 @@ gicodec_status gicodec_player_set_growing(gicodec_player* player, uint32_t growi
 
 uint32_t gicodec_player_finished(const gicodec_player* player) {
   return player != nullptr && player->player->finished() ? 1 : 0;
+}
+
+uint32_t gicodec_player_seekable(const gicodec_player* player) {
+  return player != nullptr && player->player->seekable() ? 1 : 0;
 }
 
 uint64_t gicodec_player_memory(const gicodec_player* player) {

@@ -73,6 +73,8 @@ std::span<const ContainerPacket> ContainerPlayer::packets() const noexcept {
 
 Result<std::vector<std::uint64_t>> ContainerPlayer::frames() { return state_->reader.frames(); }
 
+Result<std::vector<ListedPart>> ContainerPlayer::listed() { return state_->reader.listed(); }
+
 Result<Metadata> ContainerPlayer::metadata(std::uint8_t texture) {
   return state_->reader.metadata(texture);
 }
@@ -80,18 +82,12 @@ Result<Metadata> ContainerPlayer::metadata(std::uint8_t texture) {
 Status ContainerPlayer::select(std::span<const std::uint8_t> textures) {
   if (state_->started) return Status::out_of_order;
   return guarded([&]() -> Status {
+    std::vector<TextureRegion> wanted;
     std::vector<bool> all(state_->entries().size(), textures.empty());
+    bool few = !textures.empty();
     for (const std::uint8_t texture : textures) {
       if (texture >= all.size()) return Status::unknown_texture;
       all[texture] = true;
-      if (!state_->is_played(texture)) continue;
-      if (const auto presence = presence_texture(description(), texture)) all[*presence] = true;
-    }
-    std::vector<TextureRegion> wanted;
-    bool few = !textures.empty();
-    for (std::size_t id = 0; few && id < all.size(); ++id) {
-      if (!all[id]) continue;
-      const auto texture = static_cast<std::uint8_t>(id);
       const TextureEntry& entry = state_->entries()[texture];
       const Grid& region = description().volumes[entry.volume].region;
       if (region == Grid{}) {
@@ -101,14 +97,40 @@ Status ContainerPlayer::select(std::span<const std::uint8_t> textures) {
       // The regions of an unknown kind are unknown.
       const std::uint32_t regions =
           is_known(entry) ? regions_of(entry.desc, region).regions() : UINT32_MAX;
-      few = wanted.size() + std::uint64_t{regions} <= kMaxSelected;
+      few = few && wanted.size() + std::uint64_t{regions} <= kMaxSelected;
       for (std::uint32_t r = 0; few && r < regions; ++r) wanted.push_back({texture, r});
     }
-    if (!few) wanted.clear();
-    const Status status = state_->reader.select(wanted);
+    if (few) return state_->select(std::move(wanted));
+    for (std::size_t id = 0; id < all.size(); ++id) {
+      const auto texture = static_cast<std::uint8_t>(id);
+      if (!all[id] || !state_->is_played(texture)) continue;
+      if (const auto presence = presence_texture(description(), texture)) all[*presence] = true;
+    }
+    const Status status = state_->reader.select({});
     if (status == Status::ok) state_->selected = std::move(all);
     return status;
   });
+}
+
+Status ContainerPlayer::select(std::span<const TextureRegion> parts) {
+  if (state_->started) return Status::out_of_order;
+  return guarded([&] { return state_->select({parts.begin(), parts.end()}); });
+}
+
+/// Selects parts and those of the textures that say which of their records exist.
+Status ContainerPlayer::State::select(std::vector<TextureRegion> parts) {
+  std::vector<bool> textures(entries().size(), parts.empty());
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const auto [texture, region] = parts[i];
+    if (texture >= textures.size()) return Status::unknown_texture;
+    textures[texture] = true;
+    if (!is_played(texture)) continue;
+    const auto presence = presence_texture(reader.description(), texture);
+    if (presence) parts.push_back({*presence, region});
+  }
+  const Status status = reader.select(parts);
+  if (status == Status::ok) selected = std::move(textures);
+  return status;
 }
 
 Status ContainerPlayer::set_layout(std::uint8_t texture, const Layout& layout) {

@@ -18,6 +18,7 @@ struct ContainerPlayer::State {
   State(ContainerReader r, TextureDecoders d) noexcept
       : reader(std::move(r)), decoders(std::move(d)) {}
 
+  Status select(std::vector<TextureRegion> parts);
   /// next() and skip().
   Status advance(bool decoding);
   /// Reads the next selected packet, of any frame, into `next_packet`, unless it is there.

@@ -24,7 +24,14 @@ struct CFile {
   std::vector<std::uint8_t> bytes;
   std::size_t position = 0;
   gicodec_status failure = GICODEC_OK;
+  std::uint64_t prefetched = 0;  ///< bytes
 
+  static std::uint32_t prefetch(void* self, const gicodec_range* ranges, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) {
+      static_cast<CFile*>(self)->prefetched += ranges[i].size;
+    }
+    return 1;
+  }
   static gicodec_status write(void* self, const void* from, std::size_t size) {
     CFile& file = *static_cast<CFile*>(self);
     if (file.failure != GICODEC_OK) return file.failure;
@@ -104,6 +111,32 @@ struct CRecording {
   OwnedVolumeEncoder encoder;
   std::vector<std::vector<std::uint8_t>> states;
 };
+
+TEST(CContainer, DistantSourcesAreToldWhatWillBeRead) {
+  CFile file;
+  const auto sink = file.sink();
+  CRecording recording(&sink);
+  for (unsigned frame = 0; frame < 5; ++frame) ASSERT_EQ(recording.add(frame), GICODEC_OK);
+  ASSERT_EQ(gicodec_writer_finish(recording.writer.get()), GICODEC_OK);
+  auto source = file.source(true);
+  source.prefetch = CFile::prefetch;
+  const auto player =
+      made<OwnedPlayer>([&](auto out) { return gicodec_player_open(&source, nullptr, out); });
+  ASSERT_TRUE(player);
+  EXPECT_EQ(gicodec_player_seekable(player.get()), 1U);
+  ASSERT_EQ(gicodec_player_seek(player.get(), 14), GICODEC_OK);
+  const std::uint64_t before = file.prefetched;
+  ASSERT_EQ(gicodec_player_next(player.get()), GICODEC_OK);
+  EXPECT_GT(file.prefetched, before + 100);  // packets
+  EXPECT_LE(file.prefetched, file.bytes.size());
+  // A pipe cannot be sought.
+  file.position = 0;
+  const auto pipe = file.source(false);
+  const auto other =
+      made<OwnedPlayer>([&](auto out) { return gicodec_player_open(&pipe, nullptr, out); });
+  ASSERT_TRUE(other);
+  EXPECT_EQ(gicodec_player_seekable(other.get()), 0U);
+}
 
 TEST(CContainer, FramesComeBackInAnyOrder) {
   CRecording recording(nullptr);

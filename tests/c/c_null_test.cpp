@@ -231,6 +231,7 @@ TEST(CNull, NullInPlaceOfAHandleOrAnOutput) {
   EXPECT_EQ(gicodec_player_set_layout(nullptr, 0, &desc), kInvalid);
   EXPECT_EQ(gicodec_player_next(nullptr), kInvalid);
   EXPECT_EQ(gicodec_player_finished(nullptr), 0U);
+  EXPECT_EQ(gicodec_player_seekable(nullptr), 0U);
   EXPECT_EQ(gicodec_player_memory(nullptr), 0U);
   EXPECT_EQ(gicodec_player_seek(nullptr, 0), kInvalid);
   EXPECT_EQ(gicodec_player_frame(nullptr), 0U);

@@ -179,10 +179,10 @@ void bad_indices() {
     std::uint64_t frame, distance;
     std::uint8_t id = 0, flags = 1;
   };
-  const auto file = [&](std::uint64_t before, const std::vector<Line>& lines, std::uint64_t here) {
+  const auto file = [&](std::uint64_t directory, const std::vector<Line>& lines,
+                        std::uint64_t here) {
     Bytes body;
     ByteWriter writer(body);
-    writer.fixed(before);
     writer.varint(lines.size());
     for (const Line& line : lines) {
       writer.varint(line.frame);
@@ -191,6 +191,10 @@ void bad_indices() {
       writer.varint(0);
       writer.fixed(line.flags);
     }
+    writer.varint(0);
+    writer.fixed(directory);
+    writer.varint(directory == 0 ? 0 : 1);
+    if (directory != 0) writer.bytes(bytes({0, 40, 0, 0}));
     writer.fixed(here);
     writer.bytes(std::as_bytes(std::span(kIndexMark)));
     return head + first + second + test::entry(3, body) + test::end_entry(part);
@@ -198,7 +202,7 @@ void bad_indices() {
   const std::uint64_t step = then - at;
   save("index.gic", file(0, {{0, at}, {1, step}}, part));
   save("index_order.gic", file(0, {{0, then}, {1, 0}}, part));
-  save("index_before.gic", file(part, {{0, at}, {1, step}}, part));
+  save("index_directory.gic", file(part, {{0, at}, {1, step}}, part));
   save("bad_index_place.gic", file(0, {{0, at}, {1, step}}, part - 1));
   save("index_texture.gic", file(0, {{0, at, 1}, {1, step}}, part));
   save("index_flags.gic", file(0, {{0, at, 0, 3}, {1, step}}, part));

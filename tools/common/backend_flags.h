@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/command_line.h"
+#include "common/http_source.h"
 
 #include <gicodec/gicodec.h>
 
@@ -49,6 +50,7 @@ struct DecoderFlags {
   Isa isa = best_isa();
   std::uint64_t memory = 2048;  ///< MiB for all textures of a container together
   bool memory_flag = false;     ///< the program has --max-memory
+  HttpFlags http;               ///< of containers on servers
 };
 /// Adds "--max-memory MIB"; help shows `more` after its text.
 void add_memory_flag(Command& command, DecoderFlags& flags, const std::string& more = "");

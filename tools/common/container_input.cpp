@@ -39,21 +39,18 @@ std::uint64_t mebibytes(std::uint64_t bytes) { return (bytes >> 20) + 1; }
 }  // namespace
 
 ContainerInput::ContainerInput(const std::string& path, const DecoderFlags& decoding)
-    : path_(path == "-" ? "standard input" : path),
+    : path_(path == "-"    ? "standard input"
+            : is_url(path) ? shown_url(path)
+                           : path),
       decoding_(decoding),
-      hevc_(hevc_decoder(decoding)),
-      file_(path == "-" ? stdin : open_input(path)) {
-  if (!file_) fail(Exit::io, "{}: cannot be opened: {}", path_, reason(errno));
-  const auto state = path == "-" ? std::nullopt : state_of(path.c_str());
-  if (state && state->kind == FileState::Kind::directory)
-    fail(Exit::io, "{}: is a directory, not a container", path_);
-  if (state && state->kind == FileState::Kind::regular && state->size == 0) {
-    fail(Exit::bad_input,
-         "{}: is empty: a recording that was ended before its first packet, or a copy that failed; "
-         "get it again",
-         path_);
+      hevc_(hevc_decoder(decoding)) {
+  if (is_url(path)) {
+    auto server = std::make_unique<HttpSource>(path, decoding.http);
+    server_ = server.get();
+    source_ = std::make_unique<CountingSource>(std::move(server));
+  } else {
+    open_file(path);
   }
-  source_ = std::make_unique<CountingSource>(file_.get());
   open();
   for (const TextureEntry& entry : description().textures) {
     std::string why_not = no_dump(description(), entry);
@@ -70,6 +67,21 @@ ContainerInput::ContainerInput(const std::string& path, const DecoderFlags& deco
   selected_.assign(textures_.size(), true);
   prepare();
   if (source_->size() && !player_->finished()) find_missing();
+}
+
+void ContainerInput::open_file(const std::string& path) {
+  file_.reset(path == "-" ? stdin : open_input(path));
+  if (!file_) fail(Exit::io, "{}: cannot be opened: {}", path_, reason(errno));
+  const auto state = path == "-" ? std::nullopt : state_of(path.c_str());
+  if (state && state->kind == FileState::Kind::directory)
+    fail(Exit::io, "{}: is a directory, not a container", path_);
+  if (state && state->kind == FileState::Kind::regular && state->size == 0) {
+    fail(Exit::bad_input,
+         "{}: is empty: a recording that was ended before its first packet, or a copy that failed; "
+         "get it again",
+         path_);
+  }
+  source_ = std::make_unique<CountingSource>(std::make_unique<FileSource>(file_.get()));
 }
 
 StoredTexture ContainerInput::stored(const TextureEntry& entry) const {
@@ -93,7 +105,8 @@ void ContainerInput::read_metadata(bool allow_damaged) {
       remark(fmt::format("{}: {}; its files lack it", where, to_string(status)));
       continue;
     }
-    Metadata more = take(std::move(beside), where);
+    check_read(status, where);
+    Metadata more = *std::move(beside);
     if (more.empty() || !textures_[i].no_dump.empty()) continue;
     TextureEntry entry = description().textures[i];
     entry.metadata.insert(entry.metadata.end(), std::make_move_iterator(more.begin()),
@@ -118,7 +131,8 @@ void ContainerInput::open() {
     fail(Exit::bad_input, "{}: is not a .gic container", path_);
   }
   if (player.status() == Status::unsupported_version) refuse_version();
-  player_.emplace(take(std::move(player), path_));
+  check_read(player.status(), path_);
+  player_.emplace(*std::move(player));
 }
 
 void ContainerInput::refuse_version() {
@@ -145,6 +159,7 @@ void ContainerInput::prepare() {
 }
 
 void ContainerInput::find_missing() {
+  if (server_ != nullptr) return find_missing_by_index();
   try {
     while (skip_frame()) continue;
   } catch (const Error&) {
@@ -162,19 +177,6 @@ void ContainerInput::rewind() {
   sought_.reset();
 }
 
-void ContainerInput::set_files(ImageKind kind) {
-  for (StoredTexture& texture : textures_) {
-    if (texture.no_dump.empty()) tools::set_files(texture, kind);
-  }
-}
-
-void ContainerInput::drop_attribute(std::string_view name) {
-  for (StoredTexture& texture : textures_) {
-    std::erase_if(texture.info.attributes, [&](const auto& one) { return one.name == name; });
-    std::erase_if(texture.changes, [&](const auto& one) { return one.attribute.name == name; });
-  }
-}
-
 void ContainerInput::select(const std::vector<std::size_t>& textures) {
   selected_.assign(textures_.size(), false);
   for (const std::size_t texture : textures) selected_[texture] = true;
@@ -183,7 +185,10 @@ void ContainerInput::select(const std::vector<std::size_t>& textures) {
 
 void ContainerInput::seek(std::uint64_t frame) {
   // Otherwise all frames are read in order.
-  if (player_->seekable() && player_->seek(frame) == Status::ok) sought_ = frame;
+  if (!player_->seekable()) return;
+  const Status status = player_->seek(frame);
+  if (status == Status::ok) sought_ = frame;
+  if (status == Status::io_failed) check_read(status, path_);
 }
 
 bool ContainerInput::go_on(Status (ContainerPlayer::*step)()) {
@@ -221,6 +226,9 @@ std::string ContainerInput::place_of_damage() const {
 
 void ContainerInput::fail_at(Status status) const {
   const ContainerPlayer::Where at = player_->where();
+  if (status == Status::io_failed && server_ != nullptr) {
+    check_read(status, fmt::format("{}: {}", path_, place_of_damage()));
+  }
   if (!at.part) {
     // A packet that takes more by itself.
     const std::uint64_t usual = mebibytes(DecodeLimits{}.max_total_bytes - 1);

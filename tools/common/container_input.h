@@ -1,9 +1,10 @@
-// Plays a container frame by frame, from a file or standard input.
+// Plays a container frame by frame, from a file, standard input or a server of files.
 #pragma once
 
 #include "backend_flags.h"
 #include "dump/error.h"
 #include "dump/file_system.h"
+#include "http_source.h"
 #include "stored_texture.h"
 
 #include <gicodec/gicodec.h>
@@ -22,13 +23,18 @@ namespace gicodec::tools {
 
 class ContainerInput {
  public:
-  /// `path`: "-" is standard input. Throws if it cannot be opened or is no container. Reads a file
-  /// whose end is missing once to find its frames.
+  /// `path`: "-" is standard input; or a URL, see http_source.h. Throws if it cannot be opened or
+  /// is no container. Reads a file whose end is missing once to find its frames, of one on a server
+  /// the index.
   explicit ContainerInput(const std::string& path, const DecoderFlags& decoding = {});
 
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
   /// The argument that makes a command read it again.
   [[nodiscard]] std::string argument() const { return file_.get() == stdin ? "-" : path_; }
+  /// What reading took of a file of which parts are read; nullptr for files here and pipes.
+  [[nodiscard]] const HttpSource::Cost* cost() const noexcept {
+    return server_ != nullptr && server_->size() ? &server_->cost() : nullptr;
+  }
   [[nodiscard]] const ContainerDescription& description() const noexcept {
     return player_->description();
   }
@@ -50,6 +56,12 @@ class ContainerInput {
   void set_files(ImageKind kind);
   /// Makes no texture's files have an attribute.
   void drop_attribute(std::string_view name);
+  /// What the index lists, and how many frames; nothing where it has none.
+  struct Listed {
+    std::vector<ListedPart> parts;
+    std::size_t frames = 0;
+  };
+  [[nodiscard]] std::optional<Listed> from_index();
   /// Plays only these textures and their presence textures, without reading others if the container
   /// can seek. Call it before the first frame.
   void select(const std::vector<std::size_t>& textures);
@@ -94,23 +106,27 @@ class ContainerInput {
   }
 
  private:
-  /// A Source that counts the bytes read.
+  /// Counts the bytes read of a source.
   class CountingSource final : public Source {
    public:
-    explicit CountingSource(std::FILE* file) : file_(file) {}
+    explicit CountingSource(std::unique_ptr<Source> source) : source_(std::move(source)) {}
     Result<std::size_t> read(std::span<std::byte> into) override {
-      auto got = file_.read(into);
+      auto got = source_->read(into);
       if (got.ok()) bytes_read_ += *got;
       return got;
     }
-    [[nodiscard]] std::optional<std::uint64_t> size() const override { return file_.size(); }
-    Status seek(std::uint64_t offset) override { return file_.seek(offset); }
+    [[nodiscard]] std::optional<std::uint64_t> size() const override { return source_->size(); }
+    Status seek(std::uint64_t offset) override { return source_->seek(offset); }
+    bool prefetch(std::span<const ByteRange> ranges) override { return source_->prefetch(ranges); }
     [[nodiscard]] std::uint64_t bytes_read() const { return bytes_read_; }
 
    private:
-    FileSource file_;
+    std::unique_ptr<Source> source_;
     std::uint64_t bytes_read_ = 0;
   };
+  void open_file(const std::string& path);
+  /// check(), with what a server said where reading failed.
+  void check_read(Status status, const std::string& where) const;
   void open();
   [[noreturn]] void refuse_version();
   [[nodiscard]] StoredTexture stored(const TextureEntry& entry) const;
@@ -122,6 +138,7 @@ class ContainerInput {
   /// "after frame 3", for damage behind the packets read so far.
   [[nodiscard]] std::string place_of_damage() const;
   void find_missing();
+  void find_missing_by_index();
   void describe_cut();
 
   std::string path_;
@@ -129,6 +146,7 @@ class ContainerInput {
   std::unique_ptr<const Backend> hevc_;
   OwnedFile file_;
   std::unique_ptr<CountingSource> source_;
+  const HttpSource* server_ = nullptr;  ///< in source_
   std::optional<ContainerPlayer> player_;
   std::vector<StoredTexture> textures_;
   std::vector<bool> selected_;  ///< by texture
@@ -138,6 +156,9 @@ class ContainerInput {
   std::set<std::uint8_t> last_textures_;  ///< textures with packets in the last frame
   std::string missing_;
 };
+
+/// Says how much was read of a file on a server, and in how many round trips.
+void remark_cost(const ContainerInput& input);
 
 /// For programs whose result would be wrong or short if the end is missing. If it is, throws Error
 /// of Exit::bad_input that names --allow-incomplete, or if `allowed` returns a remark for the user;

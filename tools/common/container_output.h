@@ -35,7 +35,10 @@ class ContainerOutput {
     }
   }
   /// The packet is in the file afterwards, even if the program is killed.
-  void add(std::uint64_t frame, const Packet& packet) { require(writer_->add(frame, packet)); }
+  void add(std::uint64_t frame, const Packet& packet,
+           std::uint32_t region = StreamId::kWholeVolume) {
+    require(writer_->add(frame, packet, region));
+  }
   void finish() {
     require(writer_->finish());
     file_.commit();

@@ -11,6 +11,19 @@
 
 namespace gicodec::tools {
 
+void ContainerInput::set_files(ImageKind kind) {
+  for (StoredTexture& texture : textures_) {
+    if (texture.no_dump.empty()) tools::set_files(texture, kind);
+  }
+}
+
+void ContainerInput::drop_attribute(std::string_view name) {
+  for (StoredTexture& texture : textures_) {
+    std::erase_if(texture.info.attributes, [&](const auto& one) { return one.name == name; });
+    std::erase_if(texture.changes, [&](const auto& one) { return one.attribute.name == name; });
+  }
+}
+
 void require_distinct_files(const ContainerInput& input) {
   const ContainerDescription& description = input.description();
   std::vector<std::size_t> taken;

@@ -2,6 +2,7 @@
 
 #include "error.h"
 #include "modules/hevc.h"
+#include "modules/http.h"
 #include "modules/images.h"
 
 #include <dlfcn.h>
@@ -83,6 +84,12 @@ const ModuleHead* load_module(const char* name, const char* purpose) {
 const ImageModule& image_module() {
   static const auto* const module =
       reinterpret_cast<const ImageModule*>(load_module("gicodec-images", "PNG, TIFF and DPX"));
+  return *module;
+}
+
+const HttpModule& http_module() {
+  static const auto* const module =
+      reinterpret_cast<const HttpModule*>(load_module("gicodec-http", "files on servers"));
   return *module;
 }
 

@@ -37,6 +37,7 @@ struct ContainerReport {
   std::vector<TextureReport> textures;
   std::optional<double> fps;
   bool metadata = false;  ///< shows what is kept of files
+  bool by_index = false;  ///< says what the index lists: packets were not read
   std::string damage;     ///< the error that ended reading
 };
 

@@ -71,6 +71,13 @@ struct Sums {
     add_to(records, own_records);
     add_to(record_bytes, own_bytes);
   }
+  /// Adds packets of which the index says bytes, and `full` those of the textures of each.
+  void add_listed(std::uint64_t count, std::uint64_t size, std::optional<std::uint64_t> full) {
+    packets += count;
+    bytes += size;
+    full_bytes = full_bytes && full ? std::optional(*full_bytes + count * *full) : std::nullopt;
+    blocks = records = record_bytes = std::nullopt;
+  }
   [[nodiscard]] static std::optional<double> quotient(std::optional<std::uint64_t> over,
                                                       std::optional<std::uint64_t> under) {
     if (!over || under.value_or(0) == 0) return std::nullopt;

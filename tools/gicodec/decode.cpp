@@ -192,6 +192,7 @@ Exit decode(const DecodeOptions& options, const Cli& cli) {
          input.frames_there());
   }
   if (cli.quiet) return exit;
+  remark_cost(input);
   for (std::size_t i = 0; i < input.textures().size(); ++i) {
     if (!input.is_selected(i)) continue;
     const StoredTexture& texture = input.textures()[i];
@@ -251,7 +252,9 @@ void add_decode(Cli& cli) {
   Command* command =
       cli.app.add_command("decode", "Unpacks a .gic container into the dumps it was made from");
   command->footer(kDecodeFooter);
-  command->add_option("container", options->input, "Container to read; - for standard input")
+  command
+      ->add_option("container", options->input,
+                   "Container to read, file or URL; - for standard input")
       ->required()
       ->type_name("FILE");
   command->add_option("-o,--output", options->output, "Directory to write to; made if needed")
@@ -268,6 +271,7 @@ void add_decode(Cli& cli) {
   add_overwrite(*command, options->overwrite, "Replace files that are there already");
   add_allow_incomplete(*command, options->allow_incomplete);
   add_decoder_flags(*command, options->decoder);
+  add_http_flags(*command, options->decoder.http);
   command->callback(
       [&cli, options] { cli.run = [&cli, options] { return decode(*options, cli); }; });
 }

@@ -14,6 +14,7 @@
 #include "dump/sequence.h"
 #include "encode_volumes.h"
 #include "geometry_flags.h"
+#include "region_encoder.h"
 #include "texture_roles.h"
 #include "world_flags.h"
 
@@ -56,28 +57,17 @@ struct EncodeOptions {
   WorldFlags world;
   BackendFlags backend;
   std::vector<std::string> max_error;
-  std::string inactive;
+  std::string inactive, region;
   unsigned threads = 1;
 };
-
-/// Throws for texels in no block, which would be lost.
-void require_nothing_outside(const Dump& dump, const std::string& path) {
-  const TextureDesc& desc = dump.info.desc;
-  const auto record = record_in_no_block(desc, dump.texels);
-  if (!record) return;
-  const std::uint64_t width = extent(desc).width;
-  fail(Exit::bad_input, "{}: texel ({}, {}) is not zero and in no block, and would be lost; {}",
-       path, *record % width, *record / width, to_cure(Cure::leave_layout_out));
-}
 
 /// The state of one texture. Reading runs one frame ahead of encoding.
 struct Lane {
   const Sequence& files;
   StoredTexture stored;
-  Encoder encoder;
+  RegionEncoder encoder;
   std::size_t next_file = 0;
   std::optional<Dump> current, next;
-  Packet packet;
 
   void read_next() {
     next.reset();
@@ -94,8 +84,7 @@ struct Lane {
     require_nothing_outside(*next, file.path);
   }
   void encode(std::uint64_t frame) {
-    check(encoder.encode_to(ConstTextureView(current->texels), Selection::changed(), packet),
-          fmt::format("{}, frame {}", files.name, frame));
+    check(encoder.encode(current->texels), fmt::format("{}, frame {}", files.name, frame));
   }
 };
 
@@ -117,18 +106,6 @@ std::vector<std::string> listed_names(
   std::vector<std::string> names;
   for (const auto& [sequence, stored] : inputs) names.push_back(stored.name);
   return names;
-}
-
-/// Throws for a texture that no decoder would take.
-void require_size(const StoredTexture& texture, const std::string& path) {
-  const std::uint64_t bytes = texture_bytes(texture.info.desc),
-                      most = DecodeLimits{}.max_texture_bytes;
-  if (bytes <= most) return;
-  const Extent size = extent(texture.info.desc);
-  fail(Exit::bad_input,
-       "{}: {}x{}x{} records of {} take {} bytes, and a texture of a container may have {}; {}",
-       path, size.width, size.height, size.slices, record_text(texture.info.desc.record), bytes,
-       most, to_cure(Cure::crop));
 }
 
 /// What flags for all textures mean for each texture.
@@ -164,6 +141,7 @@ std::vector<Lane> make_lanes(const EncodeOptions& options, const std::vector<Seq
   }
   check_error_names(options.max_error, listed_names(inputs));
   const Roles roles = roles_of(options, inputs, silent);
+  const Grid region = region_of(options.region);
   for (auto& [sequence, stored] : inputs) {
     require_size(stored, sequence->frames.front().path);
     const bool leaves_out = !inactive.empty() && !roles.states[lanes.size()];
@@ -199,10 +177,11 @@ std::vector<Lane> make_lanes(const EncodeOptions& options, const std::vector<Seq
           "texture {}: no encoder of --hevc-encoder {} is available; {} is used instead",
           stored.name, options.backend.hevc_encoder, stored.encoder));
     }
-    Encoder encoder =
-        make_encoder(options.backend, stored.info.desc, stored.name,
-                     static_cast<std::uint8_t>(lanes.size()), max_error, options.threads);
-    lanes.push_back({*sequence, std::move(stored), std::move(encoder), 0, {}, {}, {}});
+    RegionEncoder encoder(stored.info.desc, region, [&](const TextureDesc& desc) {
+      return make_encoder(options.backend, desc, stored.name,
+                          static_cast<std::uint8_t>(lanes.size()), max_error, options.threads);
+    });
+    lanes.push_back({*sequence, std::move(stored), std::move(encoder), 0, {}, {}});
     if (leaves_out) set_inactive(lanes.back(), inactive, options.inactive);
   }
   if (!fell_back.empty() && !silent) {
@@ -242,6 +221,7 @@ Described describe(const EncodeOptions& options, const std::vector<Lane>& lanes,
   std::vector<const StoredTexture*> textures;
   for (const Lane& lane : lanes) textures.push_back(&lane.stored);
   add_volumes(description, options.geometry, textures, output);
+  for (VolumeEntry& volume : description.volumes) volume.region = region_of(options.region);
   for (std::size_t i = 0; i < lanes.size(); ++i) {
     TextureEntry own = to_entry(lanes[i].stored);
     description.textures[i].largest_error = own.largest_error;
@@ -271,7 +251,7 @@ void encode_frame(std::vector<Lane>& lanes, std::uint64_t frame, unsigned thread
   run_all(threads, tasks);
   for (const Lane* lane : present) {
     check_interrupt();
-    output.add(frame, lane->packet);
+    for (const auto& [region, packet] : lane->encoder.packets()) output.add(frame, packet, region);
   }
 }
 
@@ -387,6 +367,11 @@ void add_encode(Cli& cli) {
       ->add_option("--inactive", options->inactive,
                    "Text file with probe indices and ranges a-b that need not be stored")
       ->type_name("FILE");
+  command
+      ->add_option("--region", options->region,
+                   "Cut volumes into boxes of so many blocks, each to be read without the others; "
+                   "of a pool runs of X*Y*Z slots")
+      ->type_name("XxYxZ");
   add_threads(*command, options->threads);
   add_backend_flags(*command, options->backend);
   add_error_flag(*command, options->max_error, "LOSES BITS: how far texels may be off", "Coding");

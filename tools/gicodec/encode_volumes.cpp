@@ -1,5 +1,7 @@
 #include "encode_volumes.h"
 
+#include "common/volume_words.h"
+#include "dump/block_place.h"
 #include "dump/cure.h"
 #include "dump/error.h"
 
@@ -214,6 +216,37 @@ void spread_metadata(Described& described, std::size_t frames, const std::string
        "{}; {}",
        output, beside, textures[largest].name, bytes_of(described.beside[largest]), limit,
        to_cure(frames > 1 ? Cure::fewer_frames : Cure::erase_attribute));
+}
+
+/// Throws for a texture that no decoder would take.
+void require_size(const StoredTexture& texture, const std::string& path) {
+  const std::uint64_t bytes = texture_bytes(texture.info.desc),
+                      most = DecodeLimits{}.max_texture_bytes;
+  if (bytes <= most) return;
+  const Extent size = extent(texture.info.desc);
+  fail(Exit::bad_input,
+       "{}: {}x{}x{} records of {} take {} bytes, and a texture of a container may have {}; {}",
+       path, size.width, size.height, size.slices, record_text(texture.info.desc.record), bytes,
+       most, to_cure(Cure::crop));
+}
+
+/// Throws for texels in no block, which would be lost.
+void require_nothing_outside(const Dump& dump, const std::string& path) {
+  const TextureDesc& desc = dump.info.desc;
+  const auto record = record_in_no_block(desc, dump.texels);
+  if (!record) return;
+  const std::uint64_t width = extent(desc).width;
+  fail(Exit::bad_input, "{}: texel ({}, {}) is not zero and in no block, and would be lost; {}",
+       path, *record % width, *record / width, to_cure(Cure::leave_layout_out));
+}
+
+Grid region_of(const std::string& flag) {
+  if (flag.empty()) return {};
+  const auto region = grid_from_string(flag);
+  if (!region) {
+    fail(Exit::usage, "--region {}: takes blocks along each axis, such as 8x8x8", flag);
+  }
+  return *region;
 }
 
 }  // namespace gicodec::tools

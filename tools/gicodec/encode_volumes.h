@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/stored_texture.h"
+#include "dump/dump.h"
 #include "geometry_flags.h"
 
 #include <gicodec/container.h>
@@ -17,6 +18,14 @@ namespace gicodec::tools {
 /// make volumes.
 [[nodiscard]] std::vector<std::pair<const Sequence*, StoredTexture>> inspect_all(
     const GeometryFlags& flags, const std::vector<Sequence>& sequences);
+
+/// Throws for a texture that no decoder would take.
+void require_size(const StoredTexture& texture, const std::string& path);
+/// Throws for texels in no block, which would be lost.
+void require_nothing_outside(const Dump& dump, const std::string& path);
+
+/// Blocks of a region along each axis by --region; zeros if it is empty. Throws.
+[[nodiscard]] Grid region_of(const std::string& flag);
 
 /// Adds the volumes of textures in that order. `output`: the container's path, for messages.
 void add_volumes(ContainerDescription& description, const GeometryFlags& flags,

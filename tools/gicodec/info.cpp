@@ -1,5 +1,7 @@
 // gicodec info: reports what a container holds and where its bytes go.
+#include "common/backend_flags.h"
 #include "common/cli.h"
+#include "common/http_source.h"
 #include "common/volume_words.h"
 #include "container_report.h"
 #include "geometry_flags.h"
@@ -25,10 +27,15 @@ constexpr const char* kInfoFooter =
     "tables, modes and planes take, and in percent how often each mode, the way in which a block\n"
     "is predicted (docs/native.md), was chosen.\n"
     "\n"
+    "Of a URL only the index is read, which says how many packets there are and how many bytes "
+    "they\n"
+    "take, with what surrounds them; --packets and --verbose read all.\n"
+    "\n"
     "Examples:\n"
     "  gicodec info villa.gic\n"
     "  gicodec info villa.gic --fps 10\n"
     "  gicodec info villa.gic --packets\n"
+    "  gicodec info https://example.com/villa.gic\n"
     "  gicodec info villa.gic --format json | jq .textures[0].updates\n";
 
 struct InfoOptions {
@@ -40,6 +47,7 @@ struct InfoOptions {
   std::optional<double> fps;
   bool allow_incomplete = false;
   GeometryFlags geometry;
+  DecoderFlags decoder;
 };
 
 void add_packet(const ContainerPacket& packet, const InfoOptions& options, LookBudget& budget,
@@ -90,25 +98,53 @@ Totals totals_of(const ContainerInput& input, const std::vector<TextureReport>& 
   return totals;
 }
 
+/// Reads all packets, and counts frames. Throws Error at damage.
+void add_packets(const InfoOptions& options, const Cli& cli, ContainerReport& report,
+                 std::size_t& frames) {
+  LookBudget budget;
+  Progress progress("reading frame", 0, cli);
+  while (report.input.skip_frame()) {
+    progress.step();
+    ++frames;
+    for (const ContainerPacket& packet : report.input.packets()) {
+      add_packet(packet, options, budget, report);
+    }
+  }
+}
+
+/// Takes what the index lists; false if there is none.
+bool add_listed(ContainerReport& report, std::size_t& frames) {
+  const auto listed = report.input.from_index();
+  if (!listed) return false;
+  frames = listed->frames;
+  const ContainerDescription& description = report.input.description();
+  for (const ListedPart& part : listed->parts) {
+    TextureReport& own = report.textures[part.part.texture_id];
+    const TextureEntry& entry = description.textures[part.part.texture_id];
+    std::optional<std::uint64_t> full;
+    if (is_known(entry)) full = texture_bytes(part_of(description, entry, part.part.region));
+    own.keyframes.add_listed(part.keyframes, part.keyframe_bytes, full);
+    own.updates.add_listed(part.packets - part.keyframes, part.bytes - part.keyframe_bytes, full);
+    own.all.add_listed(part.packets, part.bytes, full);
+    own.first_frame = std::min(own.first_frame.value_or(part.first_frame), part.first_frame);
+    own.last_frame = std::max(own.last_frame.value_or(0), part.last_frame);
+  }
+  report.by_index = true;
+  return true;
+}
+
 Exit info(const InfoOptions& options, const Cli& cli) {
-  if (is_dump(options.input)) {
+  if (!is_url(options.input) && is_dump(options.input)) {
     print_dump(options.input, options.geometry, options.format == "json");
     return Exit::ok;
   }
-  ContainerInput input(options.input);
-  ContainerReport report{input, {}, {}, options.fps, options.metadata, {}};
+  ContainerInput input(options.input, options.decoder);
+  ContainerReport report{input, {}, {}, options.fps, options.metadata, false, {}};
   report.textures.resize(input.textures().size());
-  LookBudget budget;
   std::size_t frames = 0;
+  const bool all = input.cost() == nullptr || options.packets || options.verbose;
   try {
-    Progress progress("reading frame", 0, cli);
-    while (input.skip_frame()) {
-      progress.step();
-      ++frames;
-      for (const ContainerPacket& packet : input.packets()) {
-        add_packet(packet, options, budget, report);
-      }
-    }
+    if (all || !add_listed(report, frames)) add_packets(options, cli, report, frames);
   } catch (const Error& error) {
     if (error.code() != Exit::bad_input) throw;
     report.damage = error.what();
@@ -121,6 +157,7 @@ Exit info(const InfoOptions& options, const Cli& cli) {
     if (error.code() != Exit::bad_input) throw;
     damaged_metadata = error.what();
   }
+  if (!cli.quiet) remark_cost(input);
   report.totals = totals_of(input, report.textures, frames, !report.damage.empty());
   if (options.format == "json") {
     print_json(to_json(report));
@@ -145,7 +182,9 @@ void add_info(Cli& cli) {
   Command* command = cli.app.add_command(
       "info", "Lists volumes, textures, frames, sizes and ratios of a container");
   command->footer(kInfoFooter);
-  command->add_option("container", options->input, "Container to read; - for standard input")
+  command
+      ->add_option("container", options->input,
+                   "Container to read, file or URL; - for standard input")
       ->required()
       ->type_name("FILE");
   command->add_flag("--packets", options->packets, "One line per packet as well");
@@ -158,6 +197,7 @@ void add_info(Cli& cli) {
   add_allow_incomplete(*command, options->allow_incomplete);
   add_output_format(*command, options->format);
   add_geometry_flags(*command, options->geometry);
+  add_http_flags(*command, options->decoder.http);
   command->callback([&cli, options] { cli.run = [&cli, options] { return info(*options, cli); }; });
 }
 

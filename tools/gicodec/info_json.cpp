@@ -33,14 +33,15 @@ Json or_null(const std::optional<T>& value) {
 }
 Json grid_json(const Grid& grid) { return {grid.x, grid.y, grid.z}; }
 
-Json sums_json(const Sums& sums) {
+Json sums_json(const Sums& sums, bool by_index) {
+  const auto read = [&](std::uint64_t value) { return by_index ? Json(nullptr) : Json(value); };
   return {{"packets", sums.packets},
           {"blocks", or_null(sums.blocks)},
           {"bytes", sums.bytes},
-          {"header_bytes", sums.header},
-          {"index_bytes", sums.index},
-          {"guard_band_bytes", sums.guard_bands},
-          {"payload_bytes", sums.payload},
+          {"header_bytes", read(sums.header)},
+          {"index_bytes", read(sums.index)},
+          {"guard_band_bytes", read(sums.guard_bands)},
+          {"payload_bytes", read(sums.payload)},
           {"full_texture_bytes", or_null(sums.full_bytes)},
           {"record_bytes", or_null(sums.record_bytes)},
           {"ratio_full", or_null(sums.full_ratio())},
@@ -125,9 +126,9 @@ Json texture_json(const ContainerReport& report, std::size_t place) {
     json["first_frame"] = *own.first_frame;
     json["last_frame"] = *own.last_frame;
   }
-  json["keyframes"] = sums_json(own.keyframes);
-  json["updates"] = sums_json(own.updates);
-  json["all"] = sums_json(own.all);
+  json["keyframes"] = sums_json(own.keyframes, report.by_index);
+  json["updates"] = sums_json(own.updates, report.by_index);
+  json["all"] = sums_json(own.all, report.by_index);
   if (const Json native = own.payload.json(entry.desc.record); !native.is_null())
     json["native"] = native;
   const Metadata beside = report.metadata ? report.input.beside(place) : Metadata{};
@@ -163,6 +164,7 @@ Json to_json(const ContainerReport& report) {
                {"frames", totals.frames},
                {"first_frame", or_null(totals.first_frame)},
                {"last_frame", or_null(totals.last_frame)},
+               {"by_index", report.by_index},
                {"finished", !input.cut_off()},
                {"missing", input.cut_off() ? Json(input.missing()) : Json(nullptr)},
                {"epoch", description.epoch == 0 ? Json(nullptr) : Json(description.epoch)},

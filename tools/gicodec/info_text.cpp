@@ -108,6 +108,12 @@ void print_sums(const char* label, const Sums& sums) {
   print("\n");
 }
 
+/// What the bytes of packets are.
+void print_parts(const Sums& sums) {
+  print("  bytes: {} headers, {} indices, {} guard bands, {} payload\n", sums.header, sums.index,
+        sums.guard_bands, sums.payload);
+}
+
 void print_packet(const PacketLine& packet) {
   const PacketInfo& info = packet.info;
   print(
@@ -199,7 +205,7 @@ void print_texture(const ContainerReport& report, std::size_t place) {
     print("  files {}{}\n", texture.file_name(own.first_frame.value_or(0)), channels_text(texture));
   }
   if (!texture.dropped.empty()) print("  not kept: {}\n", texture.dropped);
-  print("  {}, {}\n", backends_text(texture, own),
+  print("  {}{}\n", report.by_index ? "" : backends_text(texture, own) + ", ",
         texture.lossy.empty() ? "lossless" : fmt::format("LOSSY ({})", texture.lossy));
   if (is_known(entry) && desc.presence != Presence::all) {
     print("  room for {} records a block, of which {} exist\n", record_count(desc.block),
@@ -211,8 +217,11 @@ void print_texture(const ContainerReport& report, std::size_t place) {
   print_sums("keyframes", own.keyframes);
   print_sums("updates", own.updates);
   print_sums("all", own.all);
-  print("  bytes: {} headers, {} indices, {} guard bands, {} payload\n", own.all.header,
-        own.all.index, own.all.guard_bands, own.all.payload);
+  if (report.by_index) {
+    if (own.all.packets == 0) print("  no packets\n");
+  } else {
+    print_parts(own.all);
+  }
   own.payload.print(desc.record);
   for (const PacketLine& packet : own.packets) print_packet(packet);
   if (!report.metadata) return;

@@ -119,6 +119,7 @@ Loaded load_from_container(const PreviewOptions& options, bool quiet) {
     if (!input.bytes())
       note_missing(input, options.allow_incomplete);  // a pipe's end is known only now
     if (const std::string loss = texture->loss(); !loss.empty() && !quiet) remark(loss);
+    if (!quiet) remark_cost(input);
     return {{texture->info_at(input.frame()), input.texels(id)},
             fmt::format("texture {}, frame {}", texture->name, input.frame())};
   }
@@ -131,7 +132,7 @@ Loaded load_from_container(const PreviewOptions& options, bool quiet) {
 }
 
 Loaded load(const PreviewOptions& options, bool quiet) {
-  if (options.input == "-" || is_container_file(options.input)) {
+  if (options.input == "-" || is_url(options.input) || is_container_file(options.input)) {
     return load_from_container(options, quiet);
   }
   (void)require_image_kind(options.input);
@@ -198,6 +199,7 @@ void add_preview(Cli& cli) {
       ->allow(in_range(0.001, 1e6))
       ->type_name("D");
   add_memory_flag(*command, options->decoder);
+  add_http_flags(*command, options->decoder.http);
   add_geometry_flags(*command, options->geometry);
   command->callback(
       [&cli, options] { cli.run = [&cli, options] { return preview(*options, cli); }; });

@@ -268,6 +268,7 @@ Exit verify(const VerifyOptions& options, const Cli& cli) {
     if (options.format != "json") fail(error.code(), "{}{}", error.what(), cure);
     damage = error.what();
   }
+  if (!cli.quiet) remark_cost(input);
   const Exit cut = report_cut_off(input, recovery(input), false);
   add_left_over(sequences, report, input.path());
 
@@ -374,7 +375,9 @@ void add_verify(Cli& cli) {
   Command* command = cli.app.add_command(
       "verify", "Proves that a container is sound, and gives back its dumps bit by bit");
   command->footer(kVerifyFooter);
-  command->add_option("container", options->input, "Container to check; - for standard input")
+  command
+      ->add_option("container", options->input,
+                   "Container to check, file or URL; - for standard input")
       ->required()
       ->type_name("FILE");
   command->add_option("files", options->files, "The dumps it was made from, or their directory")
@@ -385,6 +388,7 @@ void add_verify(Cli& cli) {
                  "Options");
   add_output_format(*command, options->format);
   add_decoder_flags(*command, options->decoder);
+  add_http_flags(*command, options->decoder.http);
   command->callback(
       [&cli, options] { cli.run = [&cli, options] { return verify(*options, cli); }; });
 }

@@ -83,6 +83,7 @@ void add_flags(tools::Command& app, Options& o) {
   app.add_option("--threads", o.threads, "Threads to use; default: one per processor")
       ->allow(tools::in_range(1, 256));
   tools::add_memory_flag(app, o.decoding, "; drawing may take as much again");
+  tools::add_http_flags(app, o.decoding.http);
   add_drawing_flag(app, o.drawing);
   app.add_flag("-q,--quiet", o.quiet, "Nothing but errors");
 }

@@ -26,7 +26,8 @@ void add_client_flags(tools::Command& app, ClientFlags& o) {
   app.add_option("--pin", o.pin,
                  "wss://: trust the server with this certificate, by its SHA-256, and no other")
       ->type_name("sha256:HEX");
-  add_token_flags(app, o.token);
+  tools::add_token_flags(
+      app, o.token, "File whose first line both ends must know; over ENet it is sent in clear");
   app.add_option("--delivery", o.delivery,
                  "unicast: packets made for this client; shared: packets of regions, made for all")
       ->allow(tools::one_of({"unicast", "shared"}))

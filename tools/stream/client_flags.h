@@ -3,9 +3,9 @@
 
 #include "client_camera.h"
 #include "common/cli.h"
+#include "common/token.h"
 #include "programs/kind_flags.h"
 #include "programs/scene_flags.h"
-#include "token.h"
 #include "viewer.h"
 
 #include <cstdint>
@@ -20,7 +20,7 @@ struct ClientFlags {
                                        format = "text", pin;
   kinds::SceneFlags scene;
   CameraFlags camera;
-  TokenFlags token;
+  tools::TokenFlags token;
   ViewerOptions viewer;
   std::uint32_t simulate = 0, samples = 1, window_kb = 1024, max_record_mb = 16384, memory = 4096;
   unsigned threads = 0;

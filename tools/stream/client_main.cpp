@@ -175,7 +175,7 @@ Exit run(ClientFlags& o) {
   check_trust(trust);
   o.viewer.link.net.window = o.window_kb << 10;
   o.viewer.link.quiet = o.quiet;
-  const Token token = read_token(o.token);
+  const tools::Token token = tools::read_token(o.token);
   if (!token.remark.empty() && !o.quiet) log_line("gi-client: {}", token.remark);
   o.viewer.client.token = token.text;
   o.viewer.client.delivery = o.delivery == "unicast" ? Delivery::unicast : Delivery::shared;

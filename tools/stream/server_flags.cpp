@@ -249,7 +249,8 @@ void add_server_flags(tools::Command& app, ServerFlags& o) {
                  "reload")
       ->type_name("PATH COMMAND")
       ->expected(2);
-  add_token_flags(app, o.token);
+  tools::add_token_flags(
+      app, o.token, "File whose first line both ends must know; over ENet it is sent in clear");
   add_web_flags(app, o);
   add_source_flags(app, o);
   add_update_flags(app, o);

@@ -1,10 +1,10 @@
 // Flags of gi-server.
 #pragma once
 
+#include "common/token.h"
 #include "programs/kind_flags.h"
 #include "programs/scene_flags.h"
 #include "service.h"
-#include "token.h"
 
 #include <gicodec/server.h>
 
@@ -20,7 +20,7 @@ struct ServerFlags {
   std::string listen, listen_web, users, play, region, format = "text";
   kinds::SceneFlags scene;
   kinds::KindFlags kind;
-  TokenFlags token;
+  tools::TokenFlags token;
   ServiceOptions service;
   ServerOptions server;
   std::string backend = "native", preset = "auto";

@@ -15,7 +15,6 @@
 #include "log.h"
 #include "server_flags.h"
 #include "service.h"
-#include "token.h"
 
 #include <fmt/core.h>
 
@@ -236,7 +235,7 @@ void take_addresses(ServerFlags& o) {
          "--listen-web needs --certificate and --key; on 127.0.0.1 or [::1], --insecure-web does "
          "without");
   if (!o.metrics_token_file.empty())
-    o.web.metrics_token = read_token({"", o.metrics_token_file}).text;
+    o.web.metrics_token = tools::read_token({"", o.metrics_token_file}).text;
   if (o.web.page.empty()) o.web.page = tools::installed_folder("web");
   if (o.web.page == "none") o.web.page.clear();
   if (o.web.page.empty() && o.web_scene)
@@ -272,7 +271,7 @@ Exit run(ServerFlags& o) {
   o.service.statistics.json = o.format == "json";
   o.service.statistics.quiet = o.service.quiet;
   check_reports(o);
-  const Token token = read_token(o.token);
+  const tools::Token token = tools::read_token(o.token);
   if (!token.remark.empty() && !o.service.quiet) log_line("gi-server: {}", token.remark);
   if (!o.users.empty() && !token.text.empty())
     fail(Exit::usage, "--users and a token for all exclude each other; name one of them");

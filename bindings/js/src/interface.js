@@ -264,12 +264,17 @@ export const sink = {size: 12, fields: {
   self: [4, 'Uint32', 1],
   write: [8, 'Uint32', 1],
 }};
-export const source = {size: 20, fields: {
+export const range = {size: 16, fields: {
+  offset: [0, 'BigUint64', 1],
+  size: [8, 'BigUint64', 1],
+}};
+export const source = {size: 24, fields: {
   structSize: [0, 'Uint32', 1],
   self: [4, 'Uint32', 1],
   read: [8, 'Uint32', 1],
   seek: [12, 'Uint32', 1],
   size: [16, 'Uint32', 1],
+  prefetch: [20, 'Uint32', 1],
 }};
 export const playerOptions = {size: 20, fields: {
   structSize: [0, 'Uint32', 1],

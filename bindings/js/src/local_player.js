@@ -15,12 +15,11 @@ export class LocalPlayer {
   #player = 0;
   #arrived = false;  // all bytes have
   #played = false;
+  #growing = false;  // bytes that it lacks may come
   #selected = null;  // the textures that are played; null: all
   #head = [];  // the first bytes, which name the version
   #size = null;  // of a container of which put() brings what is asked for
   #whole = false;  // all of it was asked for
-  #sought = null;  // the frame that next() goes to
-  #last = null;    // the frame that it went to
 
   constructor(instance) {
     this.#instance = instance;
@@ -36,7 +35,7 @@ export class LocalPlayer {
     if (this.#head.length < 10) this.#head.push(...bytes.subarray(0, 10 - this.#head.length));
   }
 
-  /** Says that the container has that many bytes. Calls answer {missing: {offset, size}} for those to put(). */
+  /** Says that the container has that many bytes. Calls answer {missing: [{offset, size}, …]} for those to put(). */
   begin(size) {
     this.#size = BigInt(size);
     this.#arrived = true;
@@ -53,27 +52,25 @@ export class LocalPlayer {
 
   /** What body() returns or throws, unless it lacked bytes. */
   #ranged(body) {
-    let missing = null;
-    const look = () => this.#instance.with((memory) => {
-      const at = memory.room(8);
-      const size = Number(this.#instance.call('ranges_missing', at));
-      if (size !== 0) missing = {missing: {offset: Number(this.#instance.array(BigUint64Array, at, 1)[0]), size}};
-    });
+    if (this.#size === null) return body();
+    let result, failure = null;
     try {
-      const result = body();
-      if (this.#size !== null) look();
-      return missing ?? result;
+      result = body();
     } catch (error) {
-      if (this.#size !== null) look();
-      if (missing) return missing;
-      throw error;
+      failure = error;
     }
+    const missing = Array.from(this.#instance.borrowed(BigUint64Array, 'ranges_missing'), Number);
+    if (missing.length > 0) {
+      return {missing: missing.flatMap((offset, i) => (i % 2 === 0 ? [{offset, size: missing[i + 1]}] : []))};
+    }
+    if (failure) throw failure;
+    return result;
   }
 
   /** Says that these were all. */
   finish() {
     this.#arrived = true;
-    if (this.#player) this.#instance.check('player_set_growing', [this.#player, 0]);
+    if (this.#player) this.#grow(false);
   }
 
   /** Opens what has arrived; null: more bytes are needed. Returns what the container holds. */
@@ -87,14 +84,9 @@ export class LocalPlayer {
 
   /** The container, unless it has no index to read parts by: then it is read whole. */
   #indexed(container) {
-    try {
-      const frames = this.frames();
-      return frames.missing ? frames : container;
-    } catch (error) {
-      if (this.#whole) return container;
-      this.#whole = true;
-      return {missing: {offset: 0, size: Number(this.#size)}};
-    }
+    if (this.#whole || this.#instance.call('player_seekable', this.#player)) return container;
+    this.#whole = true;
+    return {missing: [{offset: 0, size: Number(this.#size)}]};
   }
 
   #open({limits, textures} = {}) {
@@ -110,7 +102,7 @@ export class LocalPlayer {
     if (status === TRUNCATED && !this.#arrived) return null;
     if (status === UNSUPPORTED_VERSION) throw this.#unknownVersion();
     if (status !== OK) throw instance.error(status, 'the container');
-    instance.check('player_set_growing', [this.#player, this.#arrived ? 0 : 1]);
+    this.#grow(this.#size !== null || !this.#arrived);
     const container = this.#container();
     this.textures = container.textures;
     if (textures) this.#select(textures);
@@ -156,28 +148,26 @@ export class LocalPlayer {
 
   /** Applies the next frame and returns its number; null at the end, undefined: more bytes needed. */
   next() {
-    const frame = this.#ranged(() => this.#next());
-    if (this.#size === null || frame === null) return frame;
-    if (frame.missing) return this.#later(frame);
-    this.#last = frame;
-    this.#sought = null;
-    this.#instance.call('ranges_trim', MOST_HELD);
+    let frame = this.#ranged(() => this.#next());
+    if (this.#size === null) return frame;
+    if (frame === undefined) {  // nothing is missing: the file was cut off here
+      this.#grow(false);
+      frame = this.#ranged(() => this.#next());
+    }
+    if (!frame?.missing) this.#instance.call('ranges_trim', MOST_HELD);
     return frame;
   }
 
-  /** Seeks the frame that next() did not reach, since the library goes on behind what failed. */
-  #later(missing) {
-    if (this.#whole) return missing;
-    const frames = this.frames();
-    if (frames.missing) return frames;
-    const wanted = this.#sought ?? frames.find((frame) => this.#last === null || frame > this.#last);
-    return (wanted !== undefined && this.seek(wanted)) || missing;
+  /** Says whether a frame may lack bytes that come later. */
+  #grow(growing) {
+    this.#growing = growing;
+    this.#instance.check('player_set_growing', [this.#player, growing ? 1 : 0]);
   }
 
   #next() {
     const status = this.#instance.call('player_next', this.#player);
     if (status === END) return null;
-    if (status === TRUNCATED && !this.#arrived) return undefined;
+    if (status === TRUNCATED && this.#growing) return undefined;
     if (status !== OK) throw this.#instance.error(status, this.#played ? `behind frame ${this.frame()}` : 'the first frame');
     this.#played = true;
     return this.frame();
@@ -189,11 +179,9 @@ export class LocalPlayer {
   }
 
   seek(frame) {
-    const missing = this.#ranged(() => {
+    return this.#ranged(() => {
       this.#instance.check('player_seek', [this.#player, frameNumber(frame)], {what: `frame ${frame}`});
     });
-    this.#sought = frame;
-    return missing;
   }
 
   /** The frames that can be sought: those that have arrived. */

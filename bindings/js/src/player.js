@@ -4,8 +4,9 @@ import {checkOptions, checkResponse} from './error.js';
 import {bytesOf} from './instance.js';
 import {place, useWorkers} from './workers.js';
 
-/** Bytes that are read at once of a container that is read in parts: at first, and at most. */
-const FIRST_PART = 64 << 10, MOST_PART = 4 << 20;
+/** Of a container that is read in parts: the least bytes to ask for, those between two ranges that are worth a request
+ * less, and the most to ask for at once. */
+const LEAST_PART = 16 << 10, GAP = 16 << 10, MOST_PART = 4 << 20;
 
 /** Frees in workers what the page has dropped. */
 const dropped = new FinalizationRegistry((host) => host.close());
@@ -16,7 +17,6 @@ export class Player {
   #reader = null;   // of what has not arrived yet
   #owned = false;   // its chunks are nobody else's
   #ranges = null;   // {size, read} of a container that is read in parts
-  #part = FIRST_PART;  // bytes to read at once
   #signal;
   #turn = Promise.resolve();
   #from = '';  // what the server says of its response
@@ -102,23 +102,20 @@ export class Player {
 
   /** Calls a method until it has all bytes that it needs. */
   async #ask(method, values) {
-    for (this.#part = FIRST_PART;; this.#part = Math.min(2 * this.#part, MOST_PART)) {
+    for (;;) {
       const result = await this.#call(method, values);
       if (!result?.missing) return result;
-      await this.#bring(result.missing);
+      await Promise.all(joinRanges(result.missing, this.#ranges.size).map((range) => this.#bring(range)));
     }
   }
 
-  /** Reads the bytes that were missing, and some around them. */
+  /** Reads bytes that were missing. */
   async #bring({offset, size}) {
-    const {size: total} = this.#ranges;
-    const last = Math.min(total, offset + Math.max(size, this.#part));
-    const first = last < total ? offset : Math.max(0, Math.min(offset, total - this.#part));
-    const bytes = bytesOf(await this.#abortable(this.#ranges.read(first, last - first)));
-    if (bytes.length !== last - first) {
-      throw new TypeError(`the source of the container brings ${bytes.length} bytes from ${first} on, not ${last - first}`);
+    const bytes = bytesOf(await this.#abortable(this.#ranges.read(offset, size)));
+    if (bytes.length !== size) {
+      throw new TypeError(`the source of the container brings ${bytes.length} bytes from ${offset} on, not ${size}`);
     }
-    await this.#call('put', [first, bytes]);
+    await this.#call('put', [offset, bytes]);
   }
 
   #next = null;  // what was asked of the reader and has not come
@@ -211,6 +208,22 @@ export class Player {
     this.#host?.close();
     this.#host = null;
   }
+}
+
+/** What to ask for, to have these ranges. */
+function joinRanges(ranges, total) {
+  const joined = [];
+  for (const {offset, size} of [...ranges].sort((a, b) => a.offset - b.offset)) {
+    const end = Math.min(total, offset + Math.max(size, LEAST_PART));
+    const last = joined.at(-1);
+    if (last && offset <= last.end + GAP) last.end = Math.max(last.end, end);
+    else joined.push({offset, end});
+  }
+  const parts = [];
+  for (const {offset, end} of joined) {
+    for (let at = offset; at < end; at += MOST_PART) parts.push({offset: at, size: Math.min(MOST_PART, end - at)});
+  }
+  return parts;
 }
 
 /** Bytes from which on pieces are passed on alone. */

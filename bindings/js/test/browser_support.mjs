@@ -34,8 +34,10 @@ export async function serve(bodies = {}, folders = [project]) {
     const body = made.get(path) ?? (file ? readFileSync(file) : null);
     if (body === null) return response.writeHead(404).end();
     const all = Buffer.from(body);
-    const range = state.parts && /^bytes=(\d+)-(\d+)$/.exec(headers.range ?? '');
-    const [first, last] = range ? [Number(range[1]), Math.min(Number(range[2]), all.length - 1)] : [0, all.length - 1];
+    const range = state.parts && /^bytes=(\d*)-(\d+)$/.exec(headers.range ?? '');
+    let [first, last] = [0, all.length - 1];
+    if (range?.[1]) [first, last] = [Number(range[1]), Math.min(Number(range[2]), last)];
+    else if (range) first = Math.max(0, all.length - Number(range[2]));
     state.log.push({path, first, size: last - first + 1});
     response.writeHead(range ? 206 : 200, {
       'content-type': TYPES[extname(path)] ?? 'text/plain', 'content-length': last - first + 1, 'cache-control': 'no-store',

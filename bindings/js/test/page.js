@@ -24,6 +24,6 @@ window.result = (async () => {
   const desc = await mapTexture([32, 32], 'R16_SFLOAT');
   const encoder = await Encoder.create(desc);
   const client = await Client.create();
-  const loaded = await new GILoader().loadAsync(file).catch(({message}) => message);  // not one of three.js
-  return {loaded, here, there, packet: encoder.encode(new Uint16Array(1024)).length, hello: client.hello().length};
+  const {children} = await new GILoader().loadAsync(file);
+  return {loaded: children.map(({name}) => name), here, there, packet: encoder.encode(new Uint16Array(1024)).length, hello: client.hello().length};
 })();

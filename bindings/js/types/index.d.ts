@@ -24,6 +24,7 @@ export interface ContainerTexture extends Texture {
 export interface RangeSource {
   /** Bytes of the container. */
   readonly size: number;
+  /** May be called again before what it returned is there. */
   read(offset: number, size: number): Promise<Bytes> | Bytes;
 }
 /**

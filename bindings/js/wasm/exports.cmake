@@ -45,6 +45,7 @@ set(decoder_exports
   gicodec_player_select
   gicodec_player_next
   gicodec_player_set_growing
+  gicodec_player_seekable
   gicodec_player_seek
   gicodec_player_frame
   gicodec_player_frames

@@ -37,7 +37,7 @@ gicodec_status seek(void*, std::uint64_t offset) {
 
 std::uint64_t size(void*) { return arrived.size; }
 
-constexpr gicodec_source kSource{sizeof(gicodec_source), nullptr, read, seek, size};
+constexpr gicodec_source kSource{sizeof(gicodec_source), nullptr, read, seek, size, nullptr};
 
 /// Bytes of a container from an offset on.
 struct Piece {
@@ -46,13 +46,18 @@ struct Piece {
   std::uint8_t* bytes;
 };
 
+/// Ranges that are told to the caller at once.
+constexpr std::size_t kMostMissing = 256;
+
 /// A container of which pieces are there: the caller brings those that reads miss.
 struct {
   Piece* pieces;
   std::size_t count, capacity;
   std::size_t held;  ///< bytes of all pieces
   std::uint64_t size, at;
-  std::uint64_t missing_at, missing_size;  ///< what the first failed read lacks; 0: none failed
+  gicodec_range missing[kMostMissing];  ///< what is to be brought
+  std::size_t missing_count;
+  bool failed;  ///< a read lacked bytes
 } ranges;
 
 const Piece* piece_at(std::uint64_t offset) {
@@ -63,6 +68,34 @@ const Piece* piece_at(std::uint64_t offset) {
   return found == end ? nullptr : found;
 }
 
+/// The end of what is there, or listed as missing, at this offset; 0: neither.
+std::uint64_t known_until(std::uint64_t at) {
+  if (const Piece* const piece = piece_at(at)) return piece->offset + piece->size;
+  for (std::size_t i = 0; i < ranges.missing_count; ++i) {
+    const auto& [offset, size] = ranges.missing[i];
+    if (at >= offset && at - offset < size) return offset + size;
+  }
+  return 0;
+}
+
+/// Lists what is missing between these offsets.
+void want(std::uint64_t at, std::uint64_t end) {
+  while (at < end && ranges.missing_count < kMostMissing) {
+    if (const std::uint64_t known = known_until(at)) {
+      at = known;
+      continue;
+    }
+    std::uint64_t next = end;
+    for (std::size_t i = 0; i < ranges.count; ++i) {
+      if (ranges.pieces[i].offset > at) next = std::min(next, ranges.pieces[i].offset);
+    }
+    ranges.missing[ranges.missing_count++] = {at, next - at};
+    at = next;
+  }
+}
+
+/// Fewer bytes than there are: the library's call answers that the container ends here, and goes on
+/// when it is repeated.
 gicodec_status read_ranges(void*, void* into, std::size_t bytes, std::size_t* got) {
   const auto wanted =
       static_cast<std::size_t>(std::min<std::uint64_t>(bytes, ranges.size - ranges.at));
@@ -70,12 +103,10 @@ gicodec_status read_ranges(void*, void* into, std::size_t bytes, std::size_t* go
     const std::uint64_t at = ranges.at + *got;
     const Piece* const piece = piece_at(at);
     if (piece == nullptr) {
-      if (ranges.missing_size == 0) {
-        ranges.missing_at = at;
-        ranges.missing_size = wanted - *got;
-      }
+      if (!ranges.failed) want(at, ranges.at + wanted);
+      ranges.failed = true;
       *got = 0;
-      return GICODEC_IO_FAILED;
+      return GICODEC_OK;
     }
     const auto skipped = static_cast<std::size_t>(at - piece->offset);
     const std::size_t part = std::min(wanted - *got, piece->size - skipped);
@@ -86,6 +117,14 @@ gicodec_status read_ranges(void*, void* into, std::size_t bytes, std::size_t* go
   return GICODEC_OK;
 }
 
+std::uint32_t prefetch_ranges(void*, const gicodec_range* wanted, std::size_t count) {
+  for (const gicodec_range* range = wanted; range != wanted + count; ++range) {
+    if (range->offset >= ranges.size) continue;
+    want(range->offset, range->offset + std::min(range->size, ranges.size - range->offset));
+  }
+  return 1;
+}
+
 gicodec_status seek_ranges(void*, std::uint64_t offset) {
   if (offset > ranges.size) return GICODEC_IO_FAILED;
   ranges.at = offset;
@@ -94,8 +133,8 @@ gicodec_status seek_ranges(void*, std::uint64_t offset) {
 
 std::uint64_t size_of_ranges(void*) { return ranges.size; }
 
-constexpr gicodec_source kRanges{sizeof(gicodec_source), nullptr, read_ranges, seek_ranges,
-                                 size_of_ranges};
+constexpr gicodec_source kRanges{sizeof(gicodec_source), nullptr,        read_ranges, seek_ranges,
+                                 size_of_ranges,         prefetch_ranges};
 
 }  // namespace
 
@@ -127,6 +166,8 @@ const gicodec_source* gicodec_source_arrived() {
 const gicodec_source* gicodec_ranges_source(std::uint64_t size) {
   ranges.size = size;
   ranges.at = 0;
+  ranges.missing_count = 0;
+  ranges.failed = false;
   return &kRanges;
 }
 
@@ -153,10 +194,12 @@ void gicodec_ranges_trim(std::size_t most) {
   ranges.held = 0;
 }
 
-/// What the first read lacked that failed since the last call; 0: none failed.
-std::uint64_t gicodec_ranges_missing(std::uint64_t* offset) {
-  *offset = ranges.missing_at;
-  return std::exchange(ranges.missing_size, 0);
+/// What to bring, if a read lacked bytes since the last call: offset and size of each range,
+/// `count` numbers together.
+const std::uint64_t* gicodec_ranges_missing(std::size_t* count) {
+  const bool failed = std::exchange(ranges.failed, false);
+  *count = failed ? 2 * std::exchange(ranges.missing_count, 0) : 0;
+  return &ranges.missing[0].offset;
 }
 
 }  // extern "C"

@@ -255,6 +255,13 @@ class gicodec_sink(ctypes.Structure):
     ]
 
 
+class gicodec_range(ctypes.Structure):
+    _fields_ = [
+        ("offset", ctypes.c_uint64),
+        ("size", ctypes.c_uint64),
+    ]
+
+
 class gicodec_source(ctypes.Structure):
     _fields_ = [
         ("struct_size", ctypes.c_uint32),
@@ -262,6 +269,7 @@ class gicodec_source(ctypes.Structure):
         ("read", ctypes.c_void_p),
         ("seek", ctypes.c_void_p),
         ("size", ctypes.c_void_p),
+        ("prefetch", ctypes.c_void_p),
     ]
 
 
@@ -518,6 +526,7 @@ CALLS = {
     "gicodec_player_next": (ctypes.c_int32, (ctypes.c_void_p,)),
     "gicodec_player_set_growing": (ctypes.c_int32, (ctypes.c_void_p, ctypes.c_uint32,)),
     "gicodec_player_finished": (ctypes.c_uint32, (ctypes.c_void_p,)),
+    "gicodec_player_seekable": (ctypes.c_uint32, (ctypes.c_void_p,)),
     "gicodec_player_memory": (ctypes.c_uint64, (ctypes.c_void_p,)),
     "gicodec_player_seek": (ctypes.c_int32, (ctypes.c_void_p, ctypes.c_uint64,)),
     "gicodec_player_frame": (ctypes.c_uint64, (ctypes.c_void_p,)),

@@ -121,6 +121,11 @@ GICODEC_C_API const uint8_t* gicodec_writer_bytes(const gicodec_writer* writer, 
 /// Drops these bytes.
 GICODEC_C_API gicodec_status gicodec_writer_take(gicodec_writer* writer);
 
+/// Bytes of a source.
+typedef struct gicodec_range {
+  uint64_t offset, size;
+} gicodec_range;
+
 /// Gives the bytes of a container.
 typedef struct gicodec_source {
   uint32_t struct_size;
@@ -132,6 +137,9 @@ typedef struct gicodec_source {
   gicodec_status (*seek)(void* self, uint64_t offset);
   /// Total bytes; may grow. NULL just where `seek` is.
   uint64_t (*size)(void* self);
+  /// Says which bytes will be read next, so that a source that is far away brings them together.
+  /// May be called with none. 0: reading has no delay, and nobody need call it again, as if NULL.
+  uint32_t (*prefetch)(void* self, const gicodec_range* ranges, size_t count);
 } gicodec_source;
 
 typedef struct gicodec_player_options {
@@ -180,6 +188,8 @@ GICODEC_C_API gicodec_status gicodec_player_set_growing(gicodec_player* player, 
 /// Not 0 once the player found the container's end mark, which gicodec_player_open() does if the
 /// source can seek. A container without one was cut off, or is growing.
 GICODEC_C_API uint32_t gicodec_player_finished(const gicodec_player* player);
+/// Not 0 if gicodec_player_seek() works: the source can seek, and its index is sound.
+GICODEC_C_API uint32_t gicodec_player_seekable(const gicodec_player* player);
 /// Peak bytes that it holds, as max_total_bytes counts them.
 GICODEC_C_API uint64_t gicodec_player_memory(const gicodec_player* player);
 /// The next gicodec_player_next() applies that frame. GICODEC_UNKNOWN_FRAME.

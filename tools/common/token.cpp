@@ -4,23 +4,17 @@
 
 #include <gicodec/protocol.h>
 
-#include <sys/stat.h>
-
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <memory>
+#include <system_error>
 
-namespace gicodec::streaming {
+namespace gicodec::tools {
 
-using tools::Exit;
-using tools::fail;
-
-void add_token_flags(tools::Command& app, TokenFlags& flags) {
-  auto* file =
-      app.add_option("--token-file", flags.file,
-                     "File whose first line both ends must know; over ENet it is sent in clear")
-          ->type_name("FILE");
+void add_token_flags(Command& app, TokenFlags& flags, const std::string& what) {
+  auto* file = app.add_option("--token-file", flags.file, what)->type_name("FILE");
   app.add_option("--token", flags.token, "The same on the command line, where others may see it")
       ->type_name("TEXT")
       ->excludes(file);
@@ -47,9 +41,11 @@ Token read_token(const TokenFlags& flags) {
     token.text = first_line(flags.file);
     if (token.text.empty())
       fail(Exit::bad_input, "{}: its first line is empty; write the token there", flags.file);
-    struct stat file {};
-    if (stat(flags.file.c_str(), &file) == 0 && S_ISREG(file.st_mode) &&
-        (file.st_mode & (S_IRGRP | S_IROTH)) != 0) {
+    using std::filesystem::perms;
+    std::error_code error;
+    const auto file = std::filesystem::status(flags.file, error);
+    if (!error && std::filesystem::is_regular_file(file) &&
+        (file.permissions() & (perms::group_read | perms::others_read)) != perms::none) {
       token.remark = fmt::format("{0}: others may read the token; chmod 600 {0}", flags.file);
     }
   }
@@ -58,4 +54,4 @@ Token read_token(const TokenFlags& flags) {
   return token;
 }
 
-}  // namespace gicodec::streaming
+}  // namespace gicodec::tools

@@ -1,0 +1,157 @@
+#!/usr/bin/env python3
+"""remote.py GICODEC TESTDATA: containers on servers, by nginx and by servers with faults."""
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+from remote_servers import Faulty, Nginx
+
+gicodec, testdata = map(os.path.abspath, sys.argv[1:3])
+if not (shutil.which("nginx") or os.path.exists("/usr/sbin/nginx")):
+    print("skipped: there is no nginx")
+    sys.exit(77)
+work = tempfile.mkdtemp()
+os.chdir(work)
+failures = 0
+
+
+def check(good, what):
+    global failures
+    if not good:
+        failures += 1
+        print(f"FAILED: {what}", file=sys.stderr)
+
+
+def run(*arguments, code=0, says=()):
+    done = subprocess.run([gicodec, *arguments], capture_output=True, text=True, timeout=120)
+    what = f"gicodec {' '.join(arguments)}: {done.returncode} {done.stderr}"
+    check(done.returncode == code, what)
+    for text in says:
+        check(text in done.stderr, f"{what}lacks {text}")
+    return done
+
+
+def make(name, frames, size):
+    """A container of noise, so many frames of two textures."""
+    os.makedirs(f"{name}.dumps")
+    for texture in ("a", "b"):
+        for frame in range(frames):
+            with open(f"{name}.dumps/{texture}.{frame:05}.raw", "wb") as file:
+                file.write(os.urandom(size * size * 4))
+        with open(f"{name}.dumps/{texture}.json", "w") as file:
+            json.dump({"format": "VK_FORMAT_R8G8B8A8_UNORM", "extent": [size, size]}, file)
+    run("encode", "-q", "--gop", "20", "-o", f"site/{name}.gic", f"{name}.dumps/")
+
+
+def brought(log):
+    return sum(size for _, _, size in log)
+
+
+os.makedirs("site")
+make("long", 3000, 8)
+make("wide", 12, 128)
+run("encode", "-q", "-o", "site/tomb.gic", f"{testdata}/tomb-converged/")
+# Cut into regions, of which those that do not change have no packets.
+run("encode", "-q", "--region", "3x2x3", "-o", "site/cut_up.gic", f"{testdata}/tomb-converged/")
+run("verify", "-q", "site/cut_up.gic", f"{testdata}/tomb-converged/")
+run("encode", "-q", "--region", "3x", "-o", "no.gic", f"{testdata}/tomb-converged/", code=2,
+    says=["such as 8x8x8"])
+nginx = Nginx(os.path.join(work, "site"), work)
+try:
+    # Small: head and end are all of it, or nearly.
+    url = f"{nginx.origin}/tomb.gic"
+    run("verify", "-q", url, f"{testdata}/tomb-converged/")
+    run("verify", "-q", f"{nginx.origin}/cut_up.gic", f"{testdata}/tomb-converged/")
+    check(all(status == 206 for status, _, _ in nginx.log()), "parts are asked for")
+
+    # By the index alone, and the same as of the file.
+    size = os.path.getsize("site/long.gic")
+    told = json.loads(run("info", "--format", "json", f"{nginx.origin}/long.gic",
+                          says=["in 2 round trips"]).stdout)
+    log = nginx.log()
+    here = json.loads(run("info", "--format", "json", "site/long.gic").stdout)
+    check(told["by_index"] and not here["by_index"], "info says what it read")
+    for field in ("frames", "first_frame", "last_frame", "bytes", "finished"):
+        check(told[field] == here[field], f"info agrees about {field}")
+    for there, local in zip(told["textures"], here["textures"]):
+        check(there["all"]["packets"] == local["all"]["packets"] == 3000, "packets")
+        check(there["keyframes"]["packets"] == local["keyframes"]["packets"], "keyframes")
+        check(0 <= there["all"]["bytes"] - local["all"]["bytes"] <= 29 * 3000, "bytes of packets")
+    check(brought(log) <= 170 << 10 and len(log) <= 7, f"info of {size} bytes: {log}")
+
+    # Any frame: head and end, parts of the index, packets.
+    for frame in (0, 1, 1499, 2999):
+        done = run("decode", "--frames", f"{frame}", "-o", f"out{frame}", f"{nginx.origin}/long.gic")
+        log = nginx.log()
+        trips = int(re.search(r"in (\d+) round trip", done.stderr)[1])
+        check(trips <= 3, f"frame {frame}: {trips}, {log}")
+        check(brought(log) <= 400 << 10, f"frame {frame}: {brought(log)} of {size} bytes")
+        for texture in ("a", "b"):
+            with open(f"long.dumps/{texture}.{frame:05}.raw", "rb") as one, \
+                    open(f"out{frame}/{texture}.{frame:05}.raw", "rb") as two:
+                check(one.read() == two.read(), f"frame {frame} of {texture}")
+    run("decode", "-q", "--frames", "7", "-o", "wide7", f"{nginx.origin}/wide.gic")
+    with open("wide.dumps/b.00007.raw", "rb") as one, open("wide7/b.00007.raw", "rb") as two:
+        check(one.read() == two.read(), "a frame of large packets")
+    nginx.log()
+
+    run("preview", "-q", "-o", "tomb.png", url)
+    run("info", f"{nginx.origin}/none.gic", code=4, says=["HTTP 404", "check the address"])
+    run("info", f"{nginx.origin}/long.dumps", code=4, says=["HTTP 404"])
+    # Cut off, or still growing.
+    with open("site/long.gic", "rb") as file:
+        whole = file.read()
+    with open("site/cut.gic", "wb") as file:
+        file.write(whole[:len(whole) * 2 // 3])
+    nginx.log()
+    run("info", f"{nginx.origin}/cut.gic", code=3, says=["its end is missing", "round trips"])
+    check(brought(nginx.log()) <= 900 << 10, "a file without its end")
+    run("info", "--allow-incomplete", f"{nginx.origin}/cut.gic")
+    port = nginx.port
+finally:
+    nginx.close()
+run("info", f"http://127.0.0.1:{port}/tomb.gic", code=4, says=["check address and connection"])
+
+# Servers that lie, cut or change the file.
+with open("site/wide.gic", "rb") as file:
+    faulty = Faulty(file.read())
+decode = ("decode", "-q", "--overwrite", "-o", "faulty")
+for fault in ("sound", "whole", "once", "redirect"):
+    run(*decode, f"{faulty.origin}/{fault}/x.gic")
+    run("verify", "-q", f"{faulty.origin}/{fault}/x.gic", "wide.dumps/")
+for fault, says in {
+        "total": "changed while it was read", "mark": "changed while it was read",
+        "changed": "changed while it was read", "place": "other bytes",
+        "longer": "other bytes", "shorter": "other bytes", "packed": "packs it (gzip)",
+        "ring": "redirects", "cut": "try again", "401": "--token-file", "404": "HTTP 404",
+        "416": "empty", "503": "HTTP 503"}.items():
+    run(*decode, f"{faulty.origin}/{fault}/x.gic", code=4, says=[says])
+run(*decode, f"{faulty.origin}/other/x.gic", code=3)
+run("info", f"{faulty.origin}/endless/x.gic", code=3, says=["is not a .gic container"])
+limited = subprocess.run(["prlimit", "--as=2000000000", gicodec, *decode,
+                          f"{faulty.origin}/endless/x.gic"], capture_output=True, timeout=60)
+check(limited.returncode == 3, "an endless file costs no memory")
+
+# A token goes to the server that was named, over TLS or on this machine, and to nobody else.
+other = Faulty(faulty.body)
+faulty.elsewhere = other.origin.replace("127.0.0.1", "localhost")
+with open("token", "w") as file:
+    file.write("secret-of-mine\n")
+os.chmod("token", 0o600)
+faulty.requests.clear()
+run("info", "--token-file", "token", f"{faulty.origin}/redirect/x.gic")
+sent = [headers.get("Authorization") for _, headers in faulty.requests]
+check(sent and all(one == "Bearer secret-of-mine" for one in sent), f"the token is sent: {sent}")
+check(other.requests and all("secret-of-mine" not in str(headers) for _, headers in other.requests),
+      "a redirect gets no token")
+check(all("Referer" not in headers for _, headers in other.requests), "nor the address before it")
+run("info", "--token", "x", "http://example.invalid/x.gic", code=2, says=["in clear", "https://"])
+hidden = run("info", f"http://user:word@127.0.0.1:{port}/x.gic?key=mine", code=4)
+check("word" not in hidden.stderr and "mine" not in hidden.stderr, "messages show no secrets")
+
+shutil.rmtree(work)
+sys.exit(1 if failures else 0)

@@ -1,0 +1,79 @@
+// Reads files on servers, of each the parts that are needed.
+#pragma once
+
+#include "common/token.h"
+#include "modules/http.h"
+
+#include <gicodec/io.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace gicodec::tools {
+
+/// True for a path that names a file on a server: "http://…" or "https://…".
+[[nodiscard]] bool is_url(std::string_view path) noexcept;
+/// A URL for messages: without user, password and what stands behind '?' and '#'.
+[[nodiscard]] std::string shown_url(std::string_view url);
+
+struct HttpFlags {
+  TokenFlags token;
+  std::string ca;
+};
+/// Adds "--ca", "--token-file" and "--token".
+void add_http_flags(Command& command, HttpFlags& flags);
+
+/// A file on a server. Asks for its head and its end at once, which are small files whole; later
+/// for what prefetch() says, or for what read() needs and more and more behind it. A file that
+/// changes meanwhile is an error. Of a server that sends files whole it reads in order, and
+/// size() has no value.
+class HttpSource final : public Source {
+ public:
+  /// Throws Error if the server has no such file, or does not answer.
+  HttpSource(const std::string& url, const HttpFlags& flags);
+
+  Result<std::size_t> read(std::span<std::byte> into) override;
+  [[nodiscard]] std::optional<std::uint64_t> size() const override { return size_; }
+  Status seek(std::uint64_t offset) override;
+  bool prefetch(std::span<const ByteRange> ranges) override;
+
+  /// Why read() failed.
+  [[nodiscard]] const std::string& failure() const noexcept { return failure_; }
+  /// What it took so far. Requests that were sent together are one round trip.
+  struct Cost {
+    std::uint64_t bytes = 0, requests = 0, round_trips = 0;
+  };
+  [[nodiscard]] const Cost& cost() const noexcept { return cost_; }
+
+ private:
+  void begin();
+  [[nodiscard]] std::vector<HttpAnswer> ask(std::span<const HttpRequest> requests);
+  [[nodiscard]] std::vector<ByteRange> missing(std::span<const ByteRange> ranges) const;
+  [[nodiscard]] std::vector<ByteRange> joined(std::span<const ByteRange> ranges) const;
+  [[nodiscard]] bool bring(std::span<const ByteRange> ranges);
+  [[nodiscard]] std::string fault(const HttpAnswer& answer, const HttpRequest& request) const;
+  [[nodiscard]] const std::vector<std::byte>* piece_at(std::uint64_t offset,
+                                                       std::size_t& skipped) const;
+  void keep(std::uint64_t offset, std::vector<std::byte> bytes);
+
+  std::unique_ptr<HttpFile> file_;
+  std::unique_ptr<HttpStream> stream_;  ///< instead of parts
+  std::string name_;                    ///< for messages
+  std::optional<std::uint64_t> size_;
+  std::string mark_;                                      ///< what changes with the file
+  std::map<std::uint64_t, std::vector<std::byte>> held_;  ///< by offset, apart from each other
+  std::uint64_t held_bytes_ = 0;
+  std::uint64_t at_ = 0;
+  std::uint64_t window_;  ///< bytes to ask for where nothing was planned
+  std::string failure_;
+  Cost cost_;
+};
+
+}  // namespace gicodec::tools
