@@ -64,6 +64,9 @@ struct PacketRule {
   return std::uint64_t{texture_id} << 32 | region;
 }
 
+/// Behind every offset.
+inline constexpr auto kNowhere = std::numeric_limits<std::uint64_t>::max();
+
 /// A packet in the index.
 struct SeekEntry {
   std::uint64_t frame = 0;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <limits>
 #include <utility>
 
 namespace gicodec {
@@ -18,7 +17,6 @@ constexpr int kTries = 16;
 constexpr std::size_t kMostHeld = std::size_t{1} << 20;
 /// Bytes of parts that are read together.
 constexpr std::uint64_t kTogether = std::uint64_t{64} << 10;
-constexpr auto kNowhere = std::numeric_limits<std::uint64_t>::max();
 
 /// Calls visit(number) for the parts that a part needs; false if there are no such parts.
 template <typename Visit>

@@ -13,7 +13,6 @@ namespace {
 
 /// First of the growing steps in which bytes are read, so that false sizes cost no memory.
 constexpr std::size_t kFirstStep = std::size_t{64} << 10;
-constexpr auto kNowhere = std::numeric_limits<std::uint64_t>::max();
 /// Bytes of type and size.
 constexpr std::size_t kMaxEntryHead = 1 + kMaxVarint;
 

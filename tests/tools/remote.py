@@ -7,6 +7,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import time
 
 from remote_servers import Faulty, Nginx
 
@@ -111,6 +112,30 @@ try:
     run("info", f"{nginx.origin}/cut.gic", code=3, says=["its end is missing", "round trips"])
     check(brought(nginx.log()) <= 900 << 10, "a file without its end")
     run("info", "--allow-incomplete", f"{nginx.origin}/cut.gic")
+    # Followed as it grows; and replaced meanwhile.
+    follow = [gicodec, "decode", "-q", "--follow", "--frames", "2000-2999"]
+    for name, place in (("file", "site/grows.gic"), ("url", f"{nginx.origin}/grows.gic")):
+        shutil.copy("site/cut.gic", "site/grows.gic")
+        with subprocess.Popen([*follow, place, "-o", f"follows_{name}"]) as process:
+            with open("site/grows.gic", "ab") as file:
+                for at in range(len(whole) * 2 // 3, len(whole), 99_999):
+                    time.sleep(0.1)
+                    file.write(whole[at:at + 99_999])
+                    file.flush()
+            check(process.wait(timeout=60) == 0, f"a {name} is followed to its end")
+        for frame in (2000, 2345, 2999):
+            with open(f"long.dumps/b.{frame:05}.raw", "rb") as one, \
+                    open(f"follows_{name}/b.{frame:05}.raw", "rb") as two:
+                check(one.read() == two.read(), f"frame {frame} of a {name} that grows")
+    shutil.copy("site/cut.gic", "site/grows.gic")
+    with subprocess.Popen([*follow, f"{nginx.origin}/grows.gic", "-o", "replaced"],
+                          stderr=subprocess.PIPE, text=True) as process:
+        time.sleep(1)
+        with open("site/grows.new", "wb") as file:
+            file.write(os.urandom(len(whole)))
+        os.replace("site/grows.new", "site/grows.gic")
+        _, said = process.communicate(timeout=60)
+        check(process.returncode == 4 and "replaced by another file" in said, f"replaced: {said}")
     port = nginx.port
 finally:
     nginx.close()

@@ -51,6 +51,7 @@ struct DecoderFlags {
   std::uint64_t memory = 2048;  ///< MiB for all textures of a container together
   bool memory_flag = false;     ///< the program has --max-memory
   HttpFlags http;               ///< of containers on servers
+  bool follow = false;          ///< waits for what is added to a container without its end
 };
 /// Adds "--max-memory MIB"; help shows `more` after its text.
 void add_memory_flag(Command& command, DecoderFlags& flags, const std::string& more = "");

@@ -66,7 +66,12 @@ ContainerInput::ContainerInput(const std::string& path, const DecoderFlags& deco
   }
   selected_.assign(textures_.size(), true);
   prepare();
-  if (source_->size() && !player_->finished()) find_missing();
+  if (!source_->size() || player_->finished()) return;
+  if (decoding.follow) {
+    player_->set_growing(true);
+  } else {
+    find_missing();
+  }
 }
 
 void ContainerInput::open_file(const std::string& path) {
@@ -192,7 +197,11 @@ void ContainerInput::seek(std::uint64_t frame) {
 }
 
 bool ContainerInput::go_on(Status (ContainerPlayer::*step)()) {
-  const Status status = ((*player_).*step)();
+  Status status = ((*player_).*step)();
+  while (status == Status::truncated && decoding_.follow && source_->size()) {
+    wait_for_more();
+    status = ((*player_).*step)();
+  }
   if (status == Status::end) return false;
   if (status == Status::truncated && !player_->where().part) {
     if (!sought_ || missing_.empty()) describe_cut();  // seek() may have skipped frames that exist.

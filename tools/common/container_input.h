@@ -137,6 +137,7 @@ class ContainerInput {
   [[noreturn]] void fail_at(Status status) const;
   /// "after frame 3", for damage behind the packets read so far.
   [[nodiscard]] std::string place_of_damage() const;
+  void wait_for_more();
   void find_missing();
   void find_missing_by_index();
   void describe_cut();
@@ -146,7 +147,7 @@ class ContainerInput {
   std::unique_ptr<const Backend> hevc_;
   OwnedFile file_;
   std::unique_ptr<CountingSource> source_;
-  const HttpSource* server_ = nullptr;  ///< in source_
+  HttpSource* server_ = nullptr;  ///< in source_
   std::optional<ContainerPlayer> player_;
   std::vector<StoredTexture> textures_;
   std::vector<bool> selected_;  ///< by texture

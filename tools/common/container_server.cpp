@@ -1,7 +1,12 @@
-// What is special about containers on servers: the index says what others read packets for.
+// What is special about containers on servers, where the index says what others read packets for,
+// and about those that grow.
 #include "cli.h"
 #include "container_input.h"
 #include "dump/error.h"
+#include "interrupts.h"
+
+#include <chrono>
+#include <thread>
 
 namespace gicodec::tools {
 
@@ -10,6 +15,15 @@ void ContainerInput::check_read(Status status, const std::string& where) const {
     fail(Exit::io, "{}: {}", where, server_->failure());
   }
   check(status, where);
+}
+
+void ContainerInput::wait_for_more() {
+  constexpr auto kPause = std::chrono::milliseconds(250);
+  check_interrupt();
+  std::this_thread::sleep_for(kPause);
+  if (server_ != nullptr && !server_->refresh()) {
+    fail(Exit::io, "{}: {}", path_, server_->failure());
+  }
 }
 
 void ContainerInput::find_missing_by_index() {

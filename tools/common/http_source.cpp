@@ -279,6 +279,36 @@ bool HttpSource::bring(std::span<const ByteRange> ranges) {
   }
 }
 
+bool HttpSource::refresh() {
+  failure_.clear();
+  if (!size_) return true;
+  // The last bytes again: a file that has others is another.
+  constexpr std::uint64_t kOverlap = 64;
+  const std::uint64_t known = std::min(kOverlap, *size_), from = *size_ - known;
+  const HttpRequest request{from, known + kFirst, false, ""};
+  HttpAnswer answer = std::move(ask({&request, 1})[0]);
+  if (answer.status != 206 || !answer.failure.empty()) {
+    failure_ = answer.status == 0 ? answer.failure : status_text(answer);
+    return false;
+  }
+  std::vector<std::byte> before(static_cast<std::size_t>(known));
+  const std::uint64_t at = std::exchange(at_, from);
+  const auto got = read(before);
+  at_ = at;
+  const bool same = got.ok() && answer.first == from && answer.total && *answer.total >= *size_ &&
+                    answer.body.size() == std::min(request.size, *answer.total - from) &&
+                    std::equal(before.begin(), before.end(), answer.body.begin());
+  if (!same) {
+    failure_ = "was replaced by another file; run the command again";
+    return false;
+  }
+  answer.body.erase(answer.body.begin(), answer.body.begin() + static_cast<std::ptrdiff_t>(known));
+  keep(*size_, std::move(answer.body));
+  size_ = answer.total;
+  mark_ = answer.mark;
+  return true;
+}
+
 /// What is wrong with an answer; empty: nothing.
 std::string HttpSource::fault(const HttpAnswer& answer, const HttpRequest& request) const {
   if (answer.status == 0 || (!answer.failure.empty() && answer.status < 400)) {

@@ -44,7 +44,11 @@ class HttpSource final : public Source {
   Status seek(std::uint64_t offset) override;
   bool prefetch(std::span<const ByteRange> ranges) override;
 
-  /// Why read() failed.
+  /// Asks how large the file is now. False if it was replaced by another, or the server does not
+  /// answer: see failure().
+  [[nodiscard]] bool refresh();
+
+  /// Why read() or refresh() failed.
   [[nodiscard]] const std::string& failure() const noexcept { return failure_; }
   /// What it took so far. Requests that were sent together are one round trip.
   struct Cost {

@@ -270,6 +270,10 @@ void add_decode(Cli& cli) {
   command->add_option("--frames", options->frames, "Only these frames")->type_name("A-B");
   add_overwrite(*command, options->overwrite, "Replace files that are there already");
   add_allow_incomplete(*command, options->allow_incomplete);
+  command->add_flag(
+      "--follow", options->decoder.follow,
+      "Of a container that is still being written: wait for its further frames, until "
+      "its end");
   add_decoder_flags(*command, options->decoder);
   add_http_flags(*command, options->decoder.http);
   command->callback(
