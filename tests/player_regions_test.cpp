@@ -90,6 +90,25 @@ TEST(PlayerRegions, OthersStayZeroAndAreNotRead) {
   }
 }
 
+TEST(PlayerRegions, ABoxNamesTheRegionsThatItMeets) {
+  const Cut cut;
+  MemorySource source(cut.sink.bytes);
+  auto reader = *ContainerReader::open(source);
+  const ContainerDescription& description = reader.description();
+  // Regions of 2x2x2 in a grid of 6x4x2: three along x, two along y.
+  using Parts = std::vector<TextureRegion>;
+  EXPECT_EQ(parts_in_box(description, 0, {0, 0, 0}, {1, 1, 1}), (Parts{{0, 0}, {1, 0}}));
+  EXPECT_EQ(parts_in_box(description, 0, {1, 2, 0}, {2, 2, 0}),
+            (Parts{{0, 3}, {0, 4}, {1, 3}, {1, 4}}));
+  EXPECT_EQ(parts_in_box(description, 0, {5, 3, 1}, {99, 99, 99}), (Parts{{0, 5}, {1, 5}}));
+  EXPECT_EQ(parts_in_box(description, 0, {0, 0, 0}, {99, 99, 99}).size(), 12U);
+  EXPECT_TRUE(parts_in_box(description, 0, {6, 0, 0}, {9, 9, 9}).empty());
+  EXPECT_TRUE(parts_in_box(description, 1, {0, 0, 0}, {9, 9, 9}).empty());
+  // A volume that is not cut comes whole.
+  const auto whole = probe_description(std::vector<ProbeTexture>{{"a", cut.desc}});
+  EXPECT_EQ(parts_in_box(whole, 0, {0, 0, 0}, {0, 0, 0}), (Parts{{0}}));
+}
+
 TEST(PlayerRegions, MisuseIsNamed) {
   const Cut cut;
   MemorySource source(cut.sink.bytes);

@@ -25,7 +25,7 @@ POINTER = (4, "Uint32")
 DESCRIPTION = r"gicodec_(status_text|version_text|format_(from_name|name)|kind_name|" \
     r"texture_desc_(check|problem|complete|info)|" \
     r"volume_desc_(create|add_group|add_texture|check|problem|destroy))"
-DECODER = rf"{DESCRIPTION}|gicodec_(player_(open|destroy|container|select|set_growing|next|seek|seekable|frame|frames|read|" \
+DECODER = rf"{DESCRIPTION}|gicodec_(player_(open|destroy|container|select|select_box|set_growing|next|seek|seekable|frame|frames|read|" \
     r"changed)|container_(json|version)|" \
     r"decoder_(create|decode|set_presence|read|changed|received|sequence)|" \
     r"volume_decoder_(create|decode|read|changed)|packet_peek|backend_name)"
@@ -38,7 +38,7 @@ MODULES = {
 }
 RUNTIME = ("_initialize", "malloc", "free")
 SOURCE = ("gicodec_source_grow", "gicodec_source_arrived", "gicodec_ranges_source", "gicodec_ranges_room",
-          "gicodec_ranges_missing", "gicodec_ranges_trim")
+          "gicodec_ranges_missing", "gicodec_ranges_trim", "gicodec_ranges_grow")
 
 
 def layout(struct):

@@ -82,6 +82,13 @@ struct TextureRegion {
   friend constexpr bool operator==(const TextureRegion&, const TextureRegion&) = default;
 };
 
+/// The parts of a volume's textures that have blocks of the box from `first` to `last`, both
+/// included, of its first group's grid; of textures over other grids, and of those that are not
+/// cut, all. Empty for an unknown volume. Throws std::bad_alloc.
+[[nodiscard]] std::vector<TextureRegion> parts_in_box(const ContainerDescription& description,
+                                                      std::uint32_t volume, const Grid& first,
+                                                      const Grid& last);
+
 /// Writes a container front to back, without seeking. A failed call changes nothing: the caller may
 /// repeat it or go on without it. After finish() every call answers out_of_order. One thread at a
 /// time.

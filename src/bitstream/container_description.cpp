@@ -251,6 +251,34 @@ Status read_description(std::span<const std::byte> body, const DecodeLimits& lim
   return status == Status::truncated ? Status::corrupt : status;
 }
 
+std::vector<TextureRegion> parts_in_box(const ContainerDescription& description,
+                                        std::uint32_t volume, const Grid& first, const Grid& last) {
+  std::vector<TextureRegion> parts;
+  if (volume >= description.volumes.size()) return parts;
+  const VolumeEntry& entry = description.volumes[volume];
+  for (std::uint32_t i = 0; i < entry.textures; ++i) {
+    const auto id = static_cast<std::uint8_t>(entry.first_texture + i);
+    const TextureDesc& desc = description.textures[id].desc;
+    if (entry.region == Grid{} || !is_known(description.textures[id])) {
+      parts.push_back({id});
+      continue;
+    }
+    const bool boxed = desc.space == Space::grid &&
+                       desc.grid == description.textures[entry.first_texture].desc.grid;
+    const RegionGrid cut = regions_of(desc, entry.region);
+    for (std::uint32_t region = 0; region < cut.regions(); ++region) {
+      const Grid at = cut.first_of(region), size = cut.grid_of(region);
+      const auto meets = [](std::uint32_t begin, std::uint32_t count, std::uint32_t from,
+                            std::uint32_t to) { return begin <= to && begin + count > from; };
+      if (!boxed || (meets(at.x, size.x, first.x, last.x) && meets(at.y, size.y, first.y, last.y) &&
+                     meets(at.z, size.z, first.z, last.z))) {
+        parts.push_back({id, region});
+      }
+    }
+  }
+  return parts;
+}
+
 std::optional<std::uint8_t> presence_texture(const ContainerDescription& description,
                                              std::uint8_t texture) noexcept {
   const TextureEntry& entry = description.textures[texture];

@@ -142,6 +142,26 @@ gicodec_status gicodec_player_select(gicodec_player* player, const uint32_t* tex
   });
 }
 
+gicodec_status gicodec_player_select_box(gicodec_player* player, uint32_t volume,
+                                         const uint32_t first[3], const uint32_t last[3]) {
+  return c::call(player, [&]() -> Status {
+    if (first == nullptr || last == nullptr) return Status::invalid_argument;
+    const ContainerDescription& description = player->player->description();
+    const auto volumes = static_cast<uint32_t>(description.volumes.size());
+    if (volume >= volumes) return Status::unknown_volume;
+    std::vector<TextureRegion> all;
+    for (uint32_t i = 0; i < volumes; ++i) {
+      constexpr Grid kEnd{UINT32_MAX, UINT32_MAX, UINT32_MAX};
+      const bool boxed = i == volume;
+      const auto parts =
+          parts_in_box(description, i, boxed ? Grid{first[0], first[1], first[2]} : Grid{},
+                       boxed ? Grid{last[0], last[1], last[2]} : kEnd);
+      all.insert(all.end(), parts.begin(), parts.end());
+    }
+    return player->player->select(all);
+  });
+}
+
 gicodec_status gicodec_player_set_layout(gicodec_player* player, uint32_t texture,
                                          const gicodec_texture_desc* desc) {
   return c::call(player, [&]() -> Status {

@@ -232,6 +232,8 @@ TEST(CNull, NullInPlaceOfAHandleOrAnOutput) {
   EXPECT_EQ(gicodec_player_next(nullptr), kInvalid);
   EXPECT_EQ(gicodec_player_finished(nullptr), 0U);
   EXPECT_EQ(gicodec_player_seekable(nullptr), 0U);
+  const std::uint32_t corner[3] = {};
+  EXPECT_EQ(gicodec_player_select_box(nullptr, 0, corner, corner), GICODEC_INVALID_ARGUMENT);
   EXPECT_EQ(gicodec_player_memory(nullptr), 0U);
   EXPECT_EQ(gicodec_player_seek(nullptr, 0), kInvalid);
   EXPECT_EQ(gicodec_player_frame(nullptr), 0U);

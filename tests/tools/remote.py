@@ -36,16 +36,16 @@ def run(*arguments, code=0, says=()):
     return done
 
 
-def make(name, frames, size):
-    """A container of noise, so many frames of two textures."""
+def make(name, frames, size, *flags, textures=("a", "b")):
+    """A container of noise, so many frames."""
     os.makedirs(f"{name}.dumps")
-    for texture in ("a", "b"):
+    for texture in textures:
         for frame in range(frames):
             with open(f"{name}.dumps/{texture}.{frame:05}.raw", "wb") as file:
                 file.write(os.urandom(size * size * 4))
         with open(f"{name}.dumps/{texture}.json", "w") as file:
             json.dump({"format": "VK_FORMAT_R8G8B8A8_UNORM", "extent": [size, size]}, file)
-    run("encode", "-q", "--gop", "20", "-o", f"site/{name}.gic", f"{name}.dumps/")
+    run("encode", "-q", "--gop", "20", *flags, "-o", f"site/{name}.gic", f"{name}.dumps/")
 
 
 def brought(log):
@@ -59,6 +59,7 @@ run("encode", "-q", "-o", "site/tomb.gic", f"{testdata}/tomb-converged/")
 # Cut into regions, of which those that do not change have no packets.
 run("encode", "-q", "--region", "3x2x3", "-o", "site/cut_up.gic", f"{testdata}/tomb-converged/")
 run("verify", "-q", "site/cut_up.gic", f"{testdata}/tomb-converged/")
+make("cut_fine", 10, 256, "--block", "32x32x1", "--region", "2x2x1", textures=("fine",))
 run("encode", "-q", "--region", "3x", "-o", "no.gic", f"{testdata}/tomb-converged/", code=2,
     says=["such as 8x8x8"])
 nginx = Nginx(os.path.join(work, "site"), work)
@@ -99,6 +100,22 @@ try:
     with open("wide.dumps/b.00007.raw", "rb") as one, open("wide7/b.00007.raw", "rb") as two:
         check(one.read() == two.read(), "a frame of large packets")
     nginx.log()
+
+    # A corner of a volume that is cut costs its own bytes; the rest is zero.
+    nginx.log()
+    run("decode", "-q", "-o", "all", f"{nginx.origin}/cut_fine.gic")
+    everything = brought(nginx.log())
+    run("decode", "-q", "--box", "0-1,0-0,0-1", "-o", "corner", f"{nginx.origin}/cut_fine.gic")
+    corner = brought(nginx.log())
+    check(corner < everything // 2, f"a corner: {corner} of {everything} bytes")
+    run("compare", "-q", "all/fine.00000.raw", "corner/fine.00000.raw", code=1)
+    with open("all/fine.00003.raw", "rb") as one, open("corner/fine.00003.raw", "rb") as two:
+        every, some = one.read(), two.read()
+    check(some[:16] == every[:16] and set(some[len(some) // 2:]) == {0}, "a corner and zeros")
+    for box, says in (("0-1,0-0,9-12", "outside"), ("1-0,0-0,0-0", "expected a box"),
+                      ("0-1,0-1", "expected a box")):
+        run("decode", "--box", box, "-o", "no", f"{nginx.origin}/cut_fine.gic", code=2, says=[says])
+    run("decode", "--box", "0-1,0-1,0-1", "-o", "no", url, code=2, says=["encode --region"])
 
     run("preview", "-q", "-o", "tomb.png", url)
     run("info", f"{nginx.origin}/none.gic", code=4, says=["HTTP 404", "check the address"])

@@ -1,6 +1,7 @@
 // The backends of this build, and the flags that choose and tune one.
 #pragma once
 
+#include "common/block_box.h"
 #include "common/command_line.h"
 #include "common/http_source.h"
 
@@ -8,6 +9,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -51,6 +53,7 @@ struct DecoderFlags {
   std::uint64_t memory = 2048;  ///< MiB for all textures of a container together
   bool memory_flag = false;     ///< the program has --max-memory
   HttpFlags http;               ///< of containers on servers
+  std::optional<BlockBox> box;  ///< of volumes that are cut reads the regions that it meets
   bool follow = false;          ///< waits for what is added to a container without its end
 };
 /// Adds "--max-memory MIB"; help shows `more` after its text.

@@ -151,18 +151,6 @@ void ContainerInput::refuse_version() {
        kVersionString, kContainerMajor);
 }
 
-void ContainerInput::prepare() {
-  std::vector<std::uint8_t> selected;
-  for (std::size_t i = 0; i < textures_.size(); ++i) {
-    const auto id = static_cast<std::uint8_t>(i);
-    if (selected_[i]) selected.push_back(id);
-    if (!textures_[i].no_dump.empty()) continue;
-    check(player_->set_layout(id, textures_[i].info.desc.layout),
-          fmt::format("{}: texture {}", path_, textures_[i].name));
-  }
-  if (selected.size() < textures_.size()) check(player_->select(selected), path_);
-}
-
 void ContainerInput::find_missing() {
   if (server_ != nullptr) return find_missing_by_index();
   try {

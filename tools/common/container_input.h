@@ -132,6 +132,8 @@ class ContainerInput {
   [[nodiscard]] StoredTexture stored(const TextureEntry& entry) const;
   /// Sets the player's selection, and the layouts of dumps.
   void prepare();
+  [[nodiscard]] std::vector<TextureRegion> parts_in_box_of(
+      std::span<const std::uint8_t> textures) const;
   void rewind();
   [[nodiscard]] bool go_on(Status (ContainerPlayer::*step)());
   [[noreturn]] void fail_at(Status status) const;

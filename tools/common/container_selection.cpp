@@ -11,6 +11,22 @@
 
 namespace gicodec::tools {
 
+void ContainerInput::prepare() {
+  std::vector<std::uint8_t> selected;
+  for (std::size_t i = 0; i < textures_.size(); ++i) {
+    const auto id = static_cast<std::uint8_t>(i);
+    if (selected_[i]) selected.push_back(id);
+    if (!textures_[i].no_dump.empty()) continue;
+    check(player_->set_layout(id, textures_[i].info.desc.layout),
+          fmt::format("{}: texture {}", path_, textures_[i].name));
+  }
+  if (decoding_.box) {
+    check(player_->select(parts_in_box_of(selected)), path_);
+  } else if (selected.size() < textures_.size()) {
+    check(player_->select(selected), path_);
+  }
+}
+
 void ContainerInput::set_files(ImageKind kind) {
   for (StoredTexture& texture : textures_) {
     if (texture.no_dump.empty()) tools::set_files(texture, kind);
@@ -22,6 +38,29 @@ void ContainerInput::drop_attribute(std::string_view name) {
     std::erase_if(texture.info.attributes, [&](const auto& one) { return one.name == name; });
     std::erase_if(texture.changes, [&](const auto& one) { return one.attribute.name == name; });
   }
+}
+
+/// Those of these textures that the box of DecoderFlags meets.
+std::vector<TextureRegion> ContainerInput::parts_in_box_of(
+    std::span<const std::uint8_t> textures) const {
+  const auto grid = [](const auto& place) { return Grid{place[0], place[1], place[2]}; };
+  const BlockBox& box = *decoding_.box;
+  std::vector<TextureRegion> all;
+  bool cut = false;
+  for (std::uint32_t i = 0; i < description().volumes.size(); ++i) {
+    cut |= description().volumes[i].region != Grid{};
+    for (const TextureRegion& part :
+         parts_in_box(description(), i, grid(box.first), grid(box.last))) {
+      if (std::ranges::find(textures, part.texture_id) != textures.end()) all.push_back(part);
+    }
+  }
+  if (!cut) {
+    fail(Exit::usage,
+         "{}: --box is for volumes that are cut into regions, by \"gicodec encode --region\"",
+         path_);
+  }
+  if (all.empty()) fail(Exit::usage, "{}: --box is outside of its volumes", path_);
+  return all;
 }
 
 void require_distinct_files(const ContainerInput& input) {

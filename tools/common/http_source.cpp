@@ -267,11 +267,12 @@ bool HttpSource::bring(std::span<const ByteRange> ranges) {
       failure_ = fault(answers[i], requests[i]);
       if (failure_.empty()) {
         keep(requests[i].first, std::move(answers[i].body));
-      } else if (tries < std::size(kPauses) && is_transient(answers[i])) {
-        again.push_back(std::move(requests[i]));
-      } else {
-        return false;
+        continue;
       }
+      const bool worth = is_transient(answers[i]) || (is_changed(answers[i]) && has_grown());
+      if (tries == std::size(kPauses) || !worth) return false;
+      again.push_back(std::move(requests[i]));
+      again.back().mark = mark_;
     }
     if (again.empty()) return true;
     std::this_thread::sleep_for(std::chrono::milliseconds(kPauses[tries]));
@@ -295,7 +296,8 @@ bool HttpSource::refresh() {
   const std::uint64_t at = std::exchange(at_, from);
   const auto got = read(before);
   at_ = at;
-  const bool same = got.ok() && answer.first == from && answer.total && *answer.total >= *size_ &&
+  const bool grown = answer.total > size_ || (answer.total == size_ && answer.mark == mark_);
+  const bool same = got.ok() && answer.first == from && grown &&
                     answer.body.size() == std::min(request.size, *answer.total - from) &&
                     std::equal(before.begin(), before.end(), answer.body.begin());
   if (!same) {
@@ -309,14 +311,27 @@ bool HttpSource::refresh() {
   return true;
 }
 
+/// True if an answer is of another state of the file.
+bool HttpSource::is_changed(const HttpAnswer& answer) const {
+  return answer.status == 200 || answer.status == 416 ||
+         (answer.status == 206 && (answer.total != size_ || answer.mark != mark_));
+}
+
+/// True if the file is the same with more at its end. Keeps failure_.
+bool HttpSource::has_grown() {
+  const std::string failure = failure_;
+  const auto before = size_;
+  const bool grown = refresh() && *size_ > *before;
+  failure_ = failure;
+  return grown;
+}
+
 /// What is wrong with an answer; empty: nothing.
 std::string HttpSource::fault(const HttpAnswer& answer, const HttpRequest& request) const {
   if (answer.status == 0 || (!answer.failure.empty() && answer.status < 400)) {
     return fmt::format("{}; check the connection and try again", answer.failure);
   }
-  const bool changed = answer.status == 200 || answer.status == 416 ||
-                       (answer.status == 206 && (answer.total != size_ || answer.mark != mark_));
-  if (changed) return "changed while it was read; run the command again";
+  if (is_changed(answer)) return "changed while it was read; run the command again";
   if (answer.status != 206) return status_text(answer);
   if (answer.first != request.first || answer.more || answer.body.size() != request.size) {
     return "the server sends other bytes than those it was asked for";

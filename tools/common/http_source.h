@@ -32,8 +32,8 @@ void add_http_flags(Command& command, HttpFlags& flags);
 
 /// A file on a server. Asks for its head and its end at once, which are small files whole; later
 /// for what prefetch() says, or for what read() needs and more and more behind it. A file that
-/// changes meanwhile is an error. Of a server that sends files whole it reads in order, and
-/// size() has no value.
+/// changes meanwhile is an error, unless it grows. Of a server that sends files whole it reads in
+/// order, and size() has no value.
 class HttpSource final : public Source {
  public:
   /// Throws Error if the server has no such file, or does not answer.
@@ -62,6 +62,8 @@ class HttpSource final : public Source {
   [[nodiscard]] std::vector<ByteRange> missing(std::span<const ByteRange> ranges) const;
   [[nodiscard]] std::vector<ByteRange> joined(std::span<const ByteRange> ranges) const;
   [[nodiscard]] bool bring(std::span<const ByteRange> ranges);
+  [[nodiscard]] bool is_changed(const HttpAnswer& answer) const;
+  [[nodiscard]] bool has_grown();
   [[nodiscard]] std::string fault(const HttpAnswer& answer, const HttpRequest& request) const;
   [[nodiscard]] const std::vector<std::byte>* piece_at(std::uint64_t offset,
                                                        std::size_t& skipped) const;

@@ -270,6 +270,15 @@ void add_decode(Cli& cli) {
   command->add_option("--frames", options->frames, "Only these frames")->type_name("A-B");
   add_overwrite(*command, options->overwrite, "Replace files that are there already");
   add_allow_incomplete(*command, options->allow_incomplete);
+  command
+      ->add_option(
+          "--box",
+          [options](const std::string& text) {
+            options->decoder.box = box_from_flag("--box", text);
+          },
+          "Of volumes that are cut (encode --region) read only the regions with blocks of this "
+          "box; texels of others are zero")
+      ->type_name("X0-X1,Y0-Y1,Z0-Z1");
   command->add_flag(
       "--follow", options->decoder.follow,
       "Of a container that is still being written: wait for its further frames, until "

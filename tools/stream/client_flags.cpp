@@ -126,25 +126,4 @@ void add_client_flags(tools::Command& app, ClientFlags& o) {
   app.add_flag("-q,--quiet", o.quiet, "Nothing but errors");
 }
 
-std::optional<Box3> parse_box(const std::string& text) {
-  if (text.empty() || text == "all") return std::nullopt;
-  Box3 box;
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  bool good = true;
-  const auto number = [&](std::uint32_t& value, char before) {
-    if (before != 0 && (at == end || *at++ != before)) return good = false;
-    const auto parsed = std::from_chars(at, end, value);
-    at = parsed.ptr;
-    return good = good && parsed.ec == std::errc{};
-  };
-  for (std::size_t axis = 0; good && axis < 3; ++axis) {
-    good = number(box.first[axis], axis == 0 ? '\0' : ',') && number(box.last[axis], '-') &&
-           box.first[axis] <= box.last[axis];
-  }
-  if (!good || at != end)
-    fail(Exit::usage, "--subscribe: expected all or a box such as 0-7,0-3,4-11, not \"{}\"", text);
-  return box;
-}
-
 }  // namespace gicodec::streaming

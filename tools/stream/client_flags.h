@@ -29,7 +29,5 @@ struct ClientFlags {
 };
 
 void add_client_flags(tools::Command& app, ClientFlags& flags);
-/// Parses --subscribe; nullopt: all blocks. Throws tools::Error.
-[[nodiscard]] std::optional<Box3> parse_box(const std::string& text);
 
 }  // namespace gicodec::streaming

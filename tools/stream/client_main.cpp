@@ -183,7 +183,9 @@ Exit run(ClientFlags& o) {
   if (hevc != nullptr) o.viewer.client.backends = {hevc.get()};
   DecodeLimits& limits = o.viewer.client.limits;
   limits.max_texture_bytes = limits.max_total_bytes = std::uint64_t{o.memory} << 20;
-  o.viewer.subscribe = parse_box(o.subscribe);
+  if (!o.subscribe.empty() && o.subscribe != "all") {
+    o.viewer.subscribe = tools::box_from_flag("--subscribe", o.subscribe, "all or ");
+  }
   o.viewer.status = !o.quiet && isatty(STDERR_FILENO) != 0;
   if (o.viewer.client.discard && o.simulate == 0) fail(Exit::usage, "--discard is for --simulate");
   if (o.viewer.client.discard && o.expect_proofs)

@@ -124,7 +124,7 @@ class Viewer {
     }
   }
 
-  static void mark(const Box3& box, Grid g, BlockMask& mask) {
+  static void mark(const tools::BlockBox& box, Grid g, BlockMask& mask) {
     if (box.last[0] >= g.x || box.last[1] >= g.y || box.last[2] >= g.z)
       tools::fail(tools::Exit::bad_input, "--subscribe: the server's grid is {}",
                   tools::to_string(g));

@@ -14,11 +14,6 @@
 
 namespace gicodec::streaming {
 
-/// A box of probes of the world volume to subscribe to, by their places in the grid.
-struct Box3 {
-  std::array<std::uint32_t, 3> first{}, last{};
-};
-
 struct ViewerOptions {
   LinkOptions link;
   ClientOptions client;
@@ -29,8 +24,8 @@ struct ViewerOptions {
   float aspect = 16.0F / 9;
   std::optional<SceneId> scene;  ///< that the server must stream
   bool subscribe_all = false;
-  std::optional<Box3> subscribe;
-  bool status = false;  ///< show a status line on a terminal
+  std::optional<tools::BlockBox> subscribe;  ///< of the world volume
+  bool status = false;                       ///< show a status line on a terminal
 };
 
 struct ViewerResult {

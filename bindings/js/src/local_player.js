@@ -20,6 +20,7 @@ export class LocalPlayer {
   #head = [];  // the first bytes, which name the version
   #size = null;  // of a container of which put() brings what is asked for
   #whole = false;  // all of it was asked for
+  #follow = false;  // more may be appended to it
 
   constructor(instance) {
     this.#instance = instance;
@@ -89,7 +90,7 @@ export class LocalPlayer {
     return {missing: [{offset: 0, size: Number(this.#size)}]};
   }
 
-  #open({limits, textures} = {}) {
+  #open({limits, textures, box, follow = false} = {}) {
     const instance = this.#instance;
     const status = instance.with((memory) => {
       const options = memory.struct(playerOptions, {limits: limits && memory.struct(limitsStruct, limits)});
@@ -105,7 +106,9 @@ export class LocalPlayer {
     this.#grow(this.#size !== null || !this.#arrived);
     const container = this.#container();
     this.textures = container.textures;
+    this.#follow = follow;
     if (textures) this.#select(textures);
+    if (box) this.#selectBox(box, container);
     return container;
   }
 
@@ -146,11 +149,27 @@ export class LocalPlayer {
     this.#selected = new Set(places);
   }
 
+  #selectBox({volume = 0, first, last}, {volumes}) {
+    const place = typeof volume === 'string' ? volumes.findIndex(({name}) => name === volume) : volume;
+    if (!volumes[place]) throw new RangeError(`there is no volume ${quoted(volume)}`);
+    for (const corner of [first, last]) {
+      if (!Array.isArray(corner) || corner.length !== 3) throw new TypeError('a box has first and last, each [x, y, z] in blocks');
+    }
+    this.#instance.with((memory) => this.#instance.check(
+        'player_select_box', [this.#player, place, ...[first, last].map((corner) => memory.put(new Uint32Array(corner)))]));
+  }
+
+  /** Says that the container has that many bytes now. */
+  grow(size) {
+    this.#size = BigInt(size);
+    this.#instance.call('ranges_grow', this.#size);
+  }
+
   /** Applies the next frame and returns its number; null at the end, undefined: more bytes needed. */
   next() {
     let frame = this.#ranged(() => this.#next());
     if (this.#size === null) return frame;
-    if (frame === undefined) {  // nothing is missing: the file was cut off here
+    if (frame === undefined && !this.#follow) {  // nothing is missing: the file was cut off here
       this.#grow(false);
       frame = this.#ranged(() => this.#next());
     }

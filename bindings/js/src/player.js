@@ -29,14 +29,14 @@ export class Player {
 
   /** @internal */
   static async open(module, source, options = {}) {
-    checkOptions(options, ['limits', 'textures', 'signal']);
-    const {limits, textures, signal} = options;
+    checkOptions(options, ['limits', 'textures', 'box', 'follow', 'signal']);
+    const {limits, textures, box, follow, signal} = options;
     signal?.throwIfAborted();
     const player = new Player(await place(module), signal);
     try {
       await player.#begin(await player.#abortable(Promise.resolve(source)));
       for (;;) {
-        const container = await player.#ask('open', [{limits, textures}]);
+        const container = await player.#ask('open', [{limits, textures, box, follow}]);
         if (container) return Object.assign(player, container);
         await player.#more();
       }
@@ -100,6 +100,16 @@ export class Player {
     await this.#call('finish', []);
   }
 
+  /** Waits until the container has more bytes. */
+  async #growth() {
+    if (typeof this.#ranges.grow !== 'function') {
+      throw new TypeError('follow: the source of the container does not say how it grows');
+    }
+    await this.#abortable(new Promise((resolve) => setTimeout(resolve, POLL)));
+    const size = await this.#abortable(this.#ranges.grow());
+    await this.#call('grow', [size]);
+  }
+
   /** Calls a method until it has all bytes that it needs. */
   async #ask(method, values) {
     for (;;) {
@@ -161,7 +171,7 @@ export class Player {
       for (;;) {
         const frame = await this.#ask('next', []);
         if (frame !== undefined) return frame;
-        await this.#more();
+        await (this.#ranges ? this.#growth() : this.#more());
       }
     });
   }
@@ -209,6 +219,9 @@ export class Player {
     this.#host = null;
   }
 }
+
+/** Milliseconds between questions for what was appended. */
+const POLL = 500;
 
 /** What to ask for, to have these ranges. */
 function joinRanges(ranges, total) {

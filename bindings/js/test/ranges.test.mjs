@@ -1,12 +1,16 @@
 // Containers on servers of files: how often and how much they are asked, and servers with faults.
 import assert from 'node:assert/strict';
+import {execFileSync} from 'node:child_process';
+import {mkdtempSync, readFileSync, rmSync} from 'node:fs';
 import {createServer} from 'node:http';
+import {tmpdir} from 'node:os';
+import {join} from 'node:path';
 import {after, before, test} from 'node:test';
 
 import {fetchRanges, open} from 'gicodec';
 import {Writer, mapTexture} from 'gicodec/encoder';
 
-import {bytes, randomBytes} from './support.mjs';
+import {SOURCE, bytes, program, randomBytes} from './support.mjs';
 
 const EDGE = 64 << 10;
 let server, file, frames;
@@ -99,6 +103,60 @@ test('a file that was cut off plays to its end', async () => {
     player.close();
   } finally {
     file = whole;
+  }
+});
+
+test('a file that grows is followed to its end', async () => {
+  const whole = file;
+  let timer;
+  try {
+    file = whole.subarray(0, whole.length / 2);
+    const player = await open(fetchRanges(`${server.origin}/grows`), {follow: true});
+    await player.seek(1400);
+    timer = setInterval(() => (file = whole.subarray(0, Math.min(whole.length, file.length + 70_001))), 100);
+    let last = null;
+    for await (const frame of player) {
+      assert.equal(frame, last === null ? 1400 : last + 1);
+      last = frame;
+      if (frame % 300 === 0) assert.deepEqual(bytes(await player.read(0)), frames[frame]);
+    }
+    assert.equal(last, 2999);
+    player.close();
+    file = whole.subarray(0, whole.length / 2);
+    const other = await open(fetchRanges(`${server.origin}/grows`), {follow: true});
+    await other.seek(1400);
+    clearInterval(timer);
+    file = randomBytes(whole.length, 99);
+    await assert.rejects(async () => {
+      while (await other.next() !== null);
+    }, /changed while it was read/);
+  } finally {
+    clearInterval(timer);
+    file = whole;
+  }
+});
+
+test('a corner of a volume that is cut costs its own bytes', async () => {
+  const folder = mkdtempSync(join(tmpdir(), 'gicodec-cut-')), whole = file;
+  try {
+    const cut = join(folder, 'cut.gic'), dumps = join(SOURCE, 'testdata/villa-converged');
+    execFileSync(program('gicodec'), ['encode', '-q', '--region', '4x4x4', '-o', cut, dumps]);
+    file = new Uint8Array(readFileSync(cut));
+    const all = await open(file), some = await open(fetchRanges(`${server.origin}/sound`), {box: {first: [0, 0, 0], last: [2, 1, 1]}});
+    for (let frame = 0; frame < 2; ++frame) {
+      assert.equal(await all.next(), await some.next());
+    }
+    const [texels, corner] = [bytes(await all.read('color')), bytes(await some.read('color'))];
+    assert.notDeepEqual(texels, corner);
+    const there = corner.filter((byte, i) => byte !== 0 && byte === texels[i]).length;
+    assert.ok(there > 0 && corner.every((byte, i) => byte === 0 || byte === texels[i]));
+    for (const [box, message] of [[{volume: 'x', first: [0, 0, 0], last: [1, 1, 1]}, /no volume "x"/],
+                                  [{first: [0, 0], last: [1, 1, 1]}, /first and last/]]) {
+      await assert.rejects(open(file, {box}), message);
+    }
+  } finally {
+    file = whole;
+    rmSync(folder, {recursive: true});
   }
 });
 

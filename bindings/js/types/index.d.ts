@@ -26,6 +26,8 @@ export interface RangeSource {
   readonly size: number;
   /** May be called again before what it returned is there. */
   read(offset: number, size: number): Promise<Bytes> | Bytes;
+  /** Looks for what was appended, and resolves to the size. For the option follow. */
+  grow?(): Promise<number>;
 }
 /**
  * Asks a server for a file: what open() reads in parts where the server sends parts, else its response.
@@ -39,6 +41,10 @@ export interface PlayerOptions {
   limits?: Limits;
   /** Plays only these, by name or number. */
   textures?: (string | number)[];
+  /** Of a volume that is cut into regions plays those with blocks from first to last, both [x, y, z]. */
+  box?: {volume?: string | number; first: [number, number, number]; last: [number, number, number]};
+  /** next() waits for frames that are appended to a file, until its end mark. */
+  follow?: boolean;
   /** Ends the player, and what it waits for. */
   signal?: AbortSignal;
 }

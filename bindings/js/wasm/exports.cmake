@@ -9,6 +9,7 @@ set(decoder_exports
   gicodec_ranges_room
   gicodec_ranges_missing
   gicodec_ranges_trim
+  gicodec_ranges_grow
   gicodec_status_text
   gicodec_version_text
   gicodec_format_from_name
@@ -43,6 +44,7 @@ set(decoder_exports
   gicodec_player_destroy
   gicodec_player_container
   gicodec_player_select
+  gicodec_player_select_box
   gicodec_player_next
   gicodec_player_set_growing
   gicodec_player_seekable

@@ -171,6 +171,9 @@ const gicodec_source* gicodec_ranges_source(std::uint64_t size) {
   return &kRanges;
 }
 
+/// The container has that many bytes now, which are no fewer than before.
+void gicodec_ranges_grow(std::uint64_t size) { ranges.size = size; }
+
 /// Memory for bytes from an offset on, which the caller fills; null if there is none.
 std::uint8_t* gicodec_ranges_room(std::uint64_t offset, std::size_t bytes) {
   if (ranges.count == ranges.capacity) {

@@ -174,6 +174,11 @@ GICODEC_C_API const gicodec_container* gicodec_player_container(const gicodec_pl
 /// GICODEC_OUT_OF_ORDER after the first frame.
 GICODEC_C_API gicodec_status gicodec_player_select(gicodec_player* player, const uint32_t* textures,
                                                    size_t count);
+/// Of this volume, if it is cut into regions, plays only those with blocks from `first` to `last`,
+/// of other volumes all. GICODEC_UNKNOWN_VOLUME; GICODEC_OUT_OF_ORDER after the first frame.
+GICODEC_C_API gicodec_status gicodec_player_select_box(gicodec_player* player, uint32_t volume,
+                                                       const uint32_t first[3],
+                                                       const uint32_t last[3]);
 /// Sets where the blocks of a texture's views lie: tiling, padding and slots of `desc`.
 /// GICODEC_OUT_OF_ORDER after the texture's first packet.
 GICODEC_C_API gicodec_status gicodec_player_set_layout(gicodec_player* player, uint32_t texture,
