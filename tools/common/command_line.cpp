@@ -1,6 +1,7 @@
 #include "common/command_line.h"
 
 #include "dump/file_system.h"
+#include "dump/text.h"
 
 #include <CLI/CLI.hpp>
 
@@ -188,6 +189,19 @@ Option* Command::add_flag(const std::string& names, bool& value, const std::stri
 }
 
 bool Command::given(const std::string& name) const { return app_->count(name) > 0; }
+
+std::string Command::given_options(const std::vector<std::string>& except) const {
+  std::string text;
+  for (const CLI::Option* const option : app_->get_options()) {
+    const std::string name = option->get_name();
+    const bool left_out = std::find(except.begin(), except.end(), name) != except.end();
+    if (option->count() == 0 || left_out) continue;
+    text += (text.empty() ? "" : " ") + name;
+    if (option->get_expected_max() == 0) continue;  // a flag
+    for (const std::string& value : option->results()) text += " " + shell_word(value);
+  }
+  return text;
+}
 
 Option* Command::get_option(const std::string& name) { return keep(app_->get_option(name)); }
 

@@ -72,6 +72,10 @@ class Command {
   /// After parse(): true if the option was given.
   [[nodiscard]] bool given(const std::string& name) const;
 
+  /// After parse(): the options that were given, as on a command line, in the order of --help,
+  /// without these.
+  [[nodiscard]] std::string given_options(const std::vector<std::string>& except) const;
+
   Command* add_command(const std::string& name, const std::string& description);
   /// `run` is called during parse(), after all values are set.
   void callback(std::function<void()> run);

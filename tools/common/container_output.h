@@ -23,9 +23,10 @@ class ContainerOutput {
  public:
   /// `existing`: what finish() may replace. `beside`: metadata beside the description, by texture.
   ContainerOutput(const std::string& path, const ContainerDescription& description,
-                  Existing existing = Existing::container, std::span<const Metadata> beside = {})
+                  Existing existing = Existing::container, std::span<const Metadata> beside = {},
+                  AtomicFile::Temporary temporary = AtomicFile::Temporary::partial)
       : name_(path == "-" ? "standard output" : path),
-        file_(path, existing, AtomicFile::Temporary::partial),
+        file_(path, existing, temporary),
         sink_(file_.stream()) {
     auto writer = ContainerWriter::create(sink_, description);
     require(writer.status());

@@ -222,7 +222,7 @@ std::FILE* AtomicFile::open_hidden() {
 }
 
 /// PATH.partial, empty and locked. The lock ends with the program.
-std::FILE* AtomicFile::open_partial() {
+std::FILE* AtomicFile::open_partial(bool restart) {
   temporary_ = target_ + ".partial";
   kept_ = true;
   OwnedFile file(open_locked(temporary_, target_));
@@ -233,6 +233,12 @@ std::FILE* AtomicFile::open_partial() {
   const auto state = state_of(file.get());
   if (state && state->kind == regular && state->size == 0) return file.release();
   if (state && state->kind == regular && is_container(file.get())) {
+    std::error_code error;
+    if (restart) fs::resize_file(native_path(temporary_), 0, error);
+    if (restart && !error) {
+      std::rewind(file.get());
+      return file.release();
+    }
     fail(Exit::io,
          "{}: was left over by a program that was killed; \"gicodec decode\" and \"gi-render\" "
          "read what it holds with --allow-incomplete; move or remove it to go on",
@@ -242,7 +248,8 @@ std::FILE* AtomicFile::open_partial() {
 }
 
 void AtomicFile::open_temporary(Temporary temporary) {
-  stream_ = temporary == Temporary::partial ? open_partial() : open_hidden();
+  stream_ = temporary == Temporary::hidden ? open_hidden()
+                                           : open_partial(temporary == Temporary::restart);
   if (stream_ == nullptr) {
     const std::string name = std::exchange(temporary_, {});
     const int code = errno;

@@ -68,6 +68,7 @@ class AtomicFile {
     hidden,   ///< a unique name
     partial,  ///< PATH.partial, which is worth keeping if the program is killed. One that exists,
               ///< or that another program writes, is an Error of Exit::io
+    restart,  ///< the same, but replaces what a program that was killed left over
   };
   explicit AtomicFile(std::string path, Existing existing = Existing::refuse,
                       Temporary temporary = Temporary::hidden);
@@ -90,7 +91,7 @@ class AtomicFile {
   friend void remove_temporaries() noexcept;
   [[noreturn]] void fail_errno(const char* what) const;
   std::FILE* open_hidden();
-  std::FILE* open_partial();
+  std::FILE* open_partial(bool restart);
   void open_temporary(Temporary temporary);
   void list() noexcept;
   /// True if the temporary name still belongs to the opened file.

@@ -1,4 +1,5 @@
 // gicodec encode: packs dumps into a container, frame by frame.
+#include "encode.h"
 #include "common/backend_flags.h"
 #include "common/cli.h"
 #include "common/container_output.h"
@@ -14,6 +15,7 @@
 #include "dump/sequence.h"
 #include "encode_volumes.h"
 #include "geometry_flags.h"
+#include "jobs.h"
 #include "region_encoder.h"
 #include "texture_roles.h"
 #include "world_flags.h"
@@ -32,34 +34,6 @@
 
 namespace gicodec::tools {
 namespace {
-
-constexpr const char* kEncodeFooter =
-    "Dumps are files NAME.FFFF.exr (or NAME_FFFF, NAME-FFFF, NAMEFFFF), or .dds, .ktx2, .raw, one\n"
-    "per texture and frame; a directory stands for all of them in it. PNG, TIFF and DPX are read\n"
-    "where every sample is an exact code; they come back as EXR. A container of ours may be\n"
-    "replaced, another file never. While it is being written the container is FILE.partial; one\n"
-    "that a killed encode left has to be moved or removed.\n"
-    "\n"
-    "Examples:\n"
-    "  gicodec encode -o villa.gic dumps/villa/*.exr\n"
-    "  gicodec encode -o villa.gic --backend hevc --hevc-packing planes dumps/villa/\n"
-    "  gicodec encode -o room.gic --grid 16x8x16 --core color=8 --core vis=16 *.exr\n"
-    "  gicodec encode -o room.gic --layout rtxgi --grid 16x8x16 *.dds\n"
-    "  gicodec encode -o light.gic --block 8x8x8 lightmap.*.ktx2\n"
-    "  gicodec encode -o room.gic --channels color=R=irr.R,G=irr.G,B=irr.B *.exr\n"
-    "  gicodec encode -o room.gic --max-error color=1 --max-error vis=0.001 *.exr\n"
-    "  gicodec encode -o - dumps/villa/ | ssh host gicodec decode - -o out/\n";
-
-struct EncodeOptions {
-  std::string output;
-  std::vector<std::string> inputs;
-  GeometryFlags geometry;
-  WorldFlags world;
-  BackendFlags backend;
-  std::vector<std::string> max_error;
-  std::string inactive, region;
-  unsigned threads = 1;
-};
 
 /// The state of one texture. Reading runs one frame ahead of encoding.
 struct Lane {
@@ -228,6 +202,7 @@ Described describe(const EncodeOptions& options, const std::vector<Lane>& lanes,
     description.textures[i].metadata = std::move(own.metadata);
   }
   description.metadata.emplace_back("creator", fmt::format("gicodec {}", kVersionString));
+  if (options.resume) description.metadata.emplace_back(kFlagsKey, options.given);
   describe_world(options.world, options.geometry.layout, frames, description);
   // A container that was cut off can thus name its missing frames.
   description.metadata.emplace_back("frames", fmt::format("{}-{}", frames.front(), frames.back()));
@@ -289,13 +264,30 @@ void remark_inactive(const std::vector<Lane>& lanes) {
                      states));
 }
 
+}  // namespace
+
 Exit encode(const EncodeOptions& options, const Cli& cli) {
+  if (!options.jobs.empty()) {
+    if (!options.output.empty() || !options.inputs.empty()) {
+      fail(Exit::usage, "--jobs takes outputs and dumps from {}, and prints its plan",
+           options.jobs);
+    }
+    return write_plan(options.jobs, cli);
+  }
+  if (options.output.empty()) fail(Exit::usage, "-o is missing: the container to write");
+  if (options.inputs.empty()) fail(Exit::usage, "no dumps are named to be packed");
   // First, because the shell expands -o *.exr to the first dump as output.
   check_output(options.output, {}, Existing::container);
   if (native_path(options.output).has_extension() && image_kind(options.output)) {
     fail(Exit::usage, "-o {}: is named like a dump; a container is named FILE.gic", options.output);
   }
   for (const std::string& path : options.inputs) require_exists(path);
+  if (options.resume &&
+      is_finished(options.output, options.given, options.inputs, options.max_error,
+                  !options.backend.lossy.empty(), options.threads)) {
+    if (!cli.quiet) remark(fmt::format("{}: is finished and verified: kept", options.output));
+    return Exit::ok;
+  }
   SequenceRemarks remarks;
   const auto sequences = group_sequences(options.inputs, options.geometry.numbers, &remarks);
   check_container_output(options, sequences);
@@ -318,7 +310,9 @@ Exit encode(const EncodeOptions& options, const Cli& cli) {
   std::vector<Lane> lanes = make_lanes(options, sequences, silent);
   const Described described = describe(options, lanes, frames);
   const ContainerDescription& description = described.description;
-  ContainerOutput output(options.output, description, Existing::container, described.beside);
+  ContainerOutput output(
+      options.output, description, Existing::container, described.beside,
+      options.resume ? AtomicFile::Temporary::restart : AtomicFile::Temporary::partial);
 
   std::vector<std::function<void()>> first_reads;
   for (Lane& lane : lanes) first_reads.emplace_back([&lane] { lane.read_next(); });
@@ -347,39 +341,6 @@ Exit encode(const EncodeOptions& options, const Cli& cli) {
       static_cast<double>(texel_bytes) / static_cast<double>(output.bytes()),
       text_of_lanes(options.backend.backend, lanes), lossy ? ", LOSSY" : ", lossless"));
   return Exit::ok;
-}
-
-}  // namespace
-
-void add_encode(Cli& cli) {
-  auto options = std::make_shared<EncodeOptions>();
-  Command* command = cli.app.add_command("encode", "Packs dumps into a .gic container");
-  command->footer(kEncodeFooter);
-  command->add_option("-o,--output", options->output, "Container to write; - for standard output")
-      ->required()
-      ->type_name("FILE");
-  command->add_option("files", options->inputs, "Dumps of any number of textures and frames")
-      ->required()
-      ->type_name("FILE");
-  command->add_flag("--allow-gaps", options->geometry.numbers.allow_gaps,
-                    "Accept missing frames and textures that lack frames");
-  command
-      ->add_option("--inactive", options->inactive,
-                   "Text file with probe indices and ranges a-b that need not be stored")
-      ->type_name("FILE");
-  command
-      ->add_option("--region", options->region,
-                   "Cut volumes into boxes of so many blocks, each to be read without the others; "
-                   "of a pool runs of X*Y*Z slots")
-      ->type_name("XxYxZ");
-  add_threads(*command, options->threads);
-  add_backend_flags(*command, options->backend);
-  add_error_flag(*command, options->max_error, "LOSES BITS: how far texels may be off", "Coding");
-  add_geometry_flags(*command, options->geometry);
-  add_world_flags(*command, options->world);
-  add_number_flags(*command, options->geometry.numbers);
-  command->callback(
-      [&cli, options] { cli.run = [&cli, options] { return encode(*options, cli); }; });
 }
 
 }  // namespace gicodec::tools
