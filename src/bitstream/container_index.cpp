@@ -9,12 +9,15 @@
 namespace gicodec {
 namespace {
 
-/// The search for the last part: bytes from the file's end, bytes read at once, candidates tried.
+/// The search for the last part: bytes from the file's end, bytes read at once, at first and at
+/// most, candidates tried.
 constexpr std::uint64_t kSearch = std::uint64_t{16} << 20;
-constexpr std::uint64_t kWindow = std::uint64_t{48} << 10;
+constexpr std::uint64_t kWindow = std::uint64_t{48} << 10, kMostWindow = std::uint64_t{2} << 20;
 constexpr int kTries = 16;
 /// Beyond so many packets, parts that were read are dropped for others.
 constexpr std::size_t kMostHeld = std::size_t{1} << 20;
+/// Of DecodeLimits::max_index_bytes, for each part that is listed: 64 Ki parts by default.
+constexpr std::uint64_t kBytesPerPart = 1024;
 /// Bytes of parts that are read together.
 constexpr std::uint64_t kTogether = std::uint64_t{64} << 10;
 
@@ -69,8 +72,12 @@ Status ContainerIndex::find_last_part(EntryReader& reader, std::uint64_t total,
   constexpr std::uint64_t kTail = kIndexTail + kEntryChecksum;
   const std::uint64_t floor = std::max(first_entry_, total - std::min(total, kSearch));
   int tries = 0;
+  std::uint64_t step = kWindow;
   for (std::uint64_t end = total; end >= floor + kTail;) {
-    const std::uint64_t begin = std::max(floor, end - std::min(end, kWindow));
+    const std::uint64_t begin = std::max(floor, end - std::min(end, step));
+    step = std::min(2 * step, kMostWindow);
+    const ByteRange there{begin, end - begin};
+    (void)reader.prefetch({&there, 1});
     const auto bytes = reader.bytes(begin, end - begin);
     if (!bytes) return bytes.status();
     const std::vector<std::byte> window(bytes->begin(), bytes->end());
@@ -116,19 +123,22 @@ Status ContainerIndex::read_directory(EntryReader& reader, std::uint64_t last,
       if (directory->directory != 0 || size != part.parts.front().size) return Status::corrupt;
       parts_.reserve(directory->parts.size() + part.parts.size() + 2);
       for (PartPlace& place : directory->parts) {
-        if (const Status status = add_part(std::move(place)); status != Status::ok) return status;
+        if (const Status status = add_part(std::move(place), reader.limits()); status != Status::ok)
+          return status;
       }
     }
     parts_.reserve(parts_.size() + part.parts.size() + 2);
     for (PartPlace& place : part.parts) {
-      if (const Status status = add_part(std::move(place)); status != Status::ok) return status;
+      if (const Status status = add_part(std::move(place), reader.limits()); status != Status::ok)
+        return status;
     }
     own.offset = last;
     if (!part.packets.empty()) {
       if (part.packets.front().offset < end_) return Status::corrupt;
       own.frame = part.packets.front().frame;
       own.needs = std::move(part.needs);
-      if (const Status status = add_part(std::move(own)); status != Status::ok) return status;
+      if (const Status status = add_part(std::move(own), reader.limits()); status != Status::ok)
+        return status;
       held_ = part.packets.size();
       parts_.back().packets = std::move(part.packets);
       parts_.back().read = true;
@@ -141,7 +151,8 @@ Status ContainerIndex::read_directory(EntryReader& reader, std::uint64_t last,
 }
 
 /// Adds a part behind the others.
-Status ContainerIndex::add_part(PartPlace place) {
+Status ContainerIndex::add_part(PartPlace place, const DecodeLimits& limits) {
+  if (parts_.size() >= limits.max_index_bytes / kBytesPerPart) return Status::limit_exceeded;
   const bool behind =
       place.offset >= end_ && (parts_.empty() || place.frame >= parts_.back().place.frame);
   if (!behind || !for_each_needed(parts_.size(), place.needs, [](std::size_t) {})) {

@@ -58,7 +58,7 @@ class ContainerIndex {
   };
   Status find_last_part(EntryReader& reader, std::uint64_t total, std::uint64_t& last);
   Status read_directory(EntryReader& reader, std::uint64_t last, std::uint64_t above);
-  Status add_part(PartPlace place);
+  Status add_part(PartPlace place, const DecodeLimits& limits);
   Status read(EntryReader& reader, std::span<const std::size_t> numbers);
   Status read(EntryReader& reader, std::size_t number);
   Status read_some(EntryReader& reader, std::size_t first, bool all);

@@ -159,10 +159,12 @@ Status ContainerReader::State::plan() {
   // Behind these, what other parts list goes along if they are there.
   for (bool more = true; more && !packets.empty(); packets = index.held_from(at)) {
     for (const SeekEntry& packet : packets) {
-      more = bytes < kMostPlan && (packet.frame <= frame || beyond < plan_bytes);
+      const std::uint64_t end = index.end_of(packet);
+      more = bytes < kMostPlan &&
+             (bytes == 0 || packet.frame <= frame || beyond + end - packet.offset <= plan_bytes);
       if (!more) break;
       frame = std::max(frame, bytes == 0 ? packet.frame : frame);
-      at = index.end_of(packet);
+      at = end;
       if (!is_wanted(packet)) continue;
       add(packet.offset, at);
       bytes += at - packet.offset;

@@ -74,6 +74,14 @@ bash plan.txt 2>said.txt
 check "a file of somebody's is kept" [ "$(cat out/noisy.gic)" = mine ]
 rm out/noisy.gic
 
+# Names that a shell would read otherwise.
+mkdir -p 'room{1,2}'
+cp rooms/room*1*/* 'room{1,2}/'
+printf '{"jobs": [{"output": "out/{a.gic,--max-error=color=9}", "inputs": ["room{1,2}/"]}]}' >odd.json
+gicodec encode -q --jobs odd.json >odd.txt
+check "a plan with braces" bash odd.txt
+check "its output" [ -s 'out/{a.gic,--max-error=color=9}' ]
+
 # Faults of manifests are found before anything runs.
 refused() { # CODE WORDS JSON
   printf '%s' "$3" >bad.json
@@ -91,6 +99,14 @@ refused 3 "another job writes a.gic too" \
 refused 3 "needs {} for the name" '{"jobs": [{"output": "a.gic", "each": "rooms"}]}'
 refused 4 "nowhere" '{"jobs": [{"output": "a.gic", "inputs": ["nowhere"]}]}'
 refused 2 "the job of a.gic: " '{"jobs": [{"output": "a.gic", "inputs": ["noisy"], "flags": ["--prest", "fast"]}]}'
+for flags in '"--preset"' '"--preset", "storng"' '"--region", "0x0x0"' '"--layout", "zz"' '"--jobs", "m.json"' \
+  '"--output=x"' '"--help"' '"noisy"' '"--", "noisy"'; do
+  refused 2 "the job of a.gic: " '{"jobs": [{"output": "a.gic", "inputs": ["noisy"], "flags": ['"$flags"']}]}'
+done
+refused 2 "a job writes a file" '{"jobs": [{"output": "-", "inputs": ["noisy"]}]}'
+refused 2 "nowhere" '{"jobs": [{"output": "nowhere/a.gic", "inputs": ["noisy"]}]}'
+refused 3 "another job writes ./a.gic too" \
+  '{"jobs": [{"output": "a.gic", "inputs": ["noisy"]}, {"output": "./a.gic", "inputs": ["noisy"]}]}'
 refused 3 'is not a list of texts' '{"flags": "--preset", "jobs": [{"output": "a.gic", "inputs": ["noisy"]}]}'
 gicodec encode --jobs manifest.json -o x.gic 2>said.txt
 check "no -o beside --jobs" [ $? = 2 ]

@@ -4,6 +4,7 @@ import json
 import os
 import re
 import shutil
+import socket
 import subprocess
 import sys
 import tempfile
@@ -191,7 +192,37 @@ check(sent and all(one == "Bearer secret-of-mine" for one in sent), f"the token 
 check(other.requests and all("secret-of-mine" not in str(headers) for _, headers in other.requests),
       "a redirect gets no token")
 check(all("Referer" not in headers for _, headers in other.requests), "nor the address before it")
-run("info", "--token", "x", "http://example.invalid/x.gic", code=2, says=["in clear", "https://"])
+for host in ("example.invalid", "localhost.example.invalid", "127.0.0.1.example.invalid"):
+    run("info", "--token", "x", f"http://{host}/x.gic", code=2, says=["in clear", "https://"])
+os.environ["http_proxy"] = other.origin
+other.requests.clear()
+run("info", "--token-file", "token", f"{faulty.origin}/sound/x.gic")
+check(not other.requests, "no proxy sees the token")
+del os.environ["http_proxy"]
+
+# A server that is away for a moment is waited for; one that never answers does not keep a user.
+run(*decode, "--follow", f"{faulty.origin}/away/x.gic")
+run("info", "--quiet", f"{faulty.origin}/whole/x.gic")
+run(*decode, "--follow", f"{faulty.origin}/whole/x.gic", code=4, says=["--follow needs parts"])
+with socket.create_server(("127.0.0.1", 0)) as silent:
+    with subprocess.Popen([gicodec, "info", f"http://127.0.0.1:{silent.getsockname()[1]}/x.gic"],
+                          stderr=subprocess.DEVNULL) as process:
+        time.sleep(0.5)
+        process.terminate()
+        begun = time.monotonic()
+        process.wait(timeout=20)
+        check(time.monotonic() - begun < 5, "a signal ends what waits for a server")
+# A file here that is followed, and is cut or removed.
+for change in (lambda: os.truncate("site/grows.gic", 1000), lambda: os.remove("site/grows.gic"),
+               lambda: os.replace("site/tomb.gic", "site/grows.gic")):
+    shutil.copy("site/cut.gic", "site/grows.gic")
+    with subprocess.Popen([*follow, "site/grows.gic", "-o", "gone"], stderr=subprocess.PIPE,
+                          text=True) as process:
+        time.sleep(1)
+        change()
+        _, said = process.communicate(timeout=30)
+        check(process.returncode == 4 and "replaced, cut or removed" in said, f"gone: {said}")
+    shutil.rmtree("gone", ignore_errors=True)
 hidden = run("info", f"http://user:word@127.0.0.1:{port}/x.gic?key=mine", code=4)
 check("word" not in hidden.stderr and "mine" not in hidden.stderr, "messages show no secrets")
 

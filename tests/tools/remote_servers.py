@@ -99,6 +99,8 @@ class Handler(http.server.BaseHTTPRequestHandler):
         total, mark, extra = len(body), '"one"', {}
         if fault.isdigit():
             return self.answer(int(fault), b"no", {})
+        if fault == "away" and 2 < count < 7:
+            return self.answer(503, b"later", {})
         if fault == "redirect":
             return self.answer(302, b"", {"Location": f"{server.elsewhere}/sound/x.gic?{'k' * 9}"})
         if fault == "ring":

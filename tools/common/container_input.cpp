@@ -45,7 +45,7 @@ ContainerInput::ContainerInput(const std::string& path, const DecoderFlags& deco
       decoding_(decoding),
       hevc_(hevc_decoder(decoding)) {
   if (is_url(path)) {
-    auto server = std::make_unique<HttpSource>(path, decoding.http);
+    auto server = std::make_unique<HttpSource>(path, decoding.http, decoding.follow);
     server_ = server.get();
     source_ = std::make_unique<CountingSource>(std::move(server));
   } else {

@@ -156,6 +156,7 @@ class ContainerInput {
   std::optional<std::uint64_t> first_frame_, last_frame_;
   std::optional<std::uint64_t> sought_;  ///< frame of seek()
   bool damaged_ = false;
+  std::uint64_t followed_ = 0;            ///< bytes of a file that grows
   std::set<std::uint8_t> last_textures_;  ///< textures with packets in the last frame
   std::string missing_;
 };

@@ -21,9 +21,15 @@ void ContainerInput::wait_for_more() {
   constexpr auto kPause = std::chrono::milliseconds(250);
   check_interrupt();
   std::this_thread::sleep_for(kPause);
-  if (server_ != nullptr && !server_->refresh()) {
-    fail(Exit::io, "{}: {}", path_, server_->failure());
+  if (server_ != nullptr) {
+    if (!server_->refresh()) fail(Exit::io, "{}: {}", path_, server_->failure());
+    return;
   }
+  const auto opened = state_of(file_.get()), named = state_of(path_.c_str());
+  if (!opened || !named || !opened->same_file(*named) || opened->size < followed_) {
+    fail(Exit::io, "{}: was replaced, cut or removed; run the command again", path_);
+  }
+  followed_ = opened->size;
 }
 
 void ContainerInput::find_missing_by_index() {

@@ -3,6 +3,7 @@
 #include "cli.h"
 #include "dump/error.h"
 #include "dump/text.h"
+#include "interrupts.h"
 
 #include <gicodec/version.h>
 
@@ -23,21 +24,33 @@ constexpr std::uint64_t kMostPart = std::uint64_t{4} << 20;
 constexpr std::uint64_t kGap = std::uint64_t{16} << 10;
 /// Bytes that are held at most, beside the file's head and end.
 constexpr std::uint64_t kMostHeld = std::uint64_t{64} << 20;
-/// A request that fails on the way is sent again, after so many milliseconds.
-constexpr int kPauses[] = {200, 1000};
+/// Requests that are sent together.
+constexpr std::size_t kTogether = 64;
+/// A request that fails on the way is sent again so often, and of a file that is followed; after so
+/// many milliseconds, later twice as many, at most.
+constexpr int kTries = 2, kFollowedTries = 40;
+constexpr int kPause = 200, kMostPause = 2000;
+
+void pause(int tries) {
+  const int time = tries < 4 ? kPause << tries : kMostPause;
+  std::this_thread::sleep_for(std::chrono::milliseconds(std::min(time, kMostPause)));
+}
 
 bool is_transient(const HttpAnswer& answer) {
   return answer.status == 0 || !answer.failure.empty() || answer.status == 429 ||
          answer.status >= 500;
 }
 
+bool is_stopped() noexcept { return caught_signal() != 0; }
+
 /// What an answer other than a file says, and the cure.
 std::string status_text(const HttpAnswer& answer) {
   switch (answer.status) {
     case 401:
     case 403:
-      return fmt::format("the server refuses it (HTTP {}); --token-file takes its token",
-                         answer.status);
+      return fmt::format(
+          "the server refuses it (HTTP {}): is it a folder? --token-file takes a token",
+          answer.status);
     case 404:
     case 410:
       return fmt::format("is not there (HTTP {}); check the address", answer.status);
@@ -50,18 +63,6 @@ std::string status_text(const HttpAnswer& answer) {
 
 }  // namespace
 
-bool is_url(std::string_view path) noexcept {
-  return path.starts_with("http://") || path.starts_with("https://");
-}
-
-std::string shown_url(std::string_view url) {
-  const auto scheme = url.find("://") + 3;
-  std::string_view rest = url.substr(scheme, url.find_first_of("?#") - scheme);
-  const auto user = rest.substr(0, rest.find('/')).rfind('@');
-  if (user != std::string_view::npos) rest.remove_prefix(user + 1);
-  return std::string(url.substr(0, scheme)) + std::string(rest);
-}
-
 void add_http_flags(Command& command, HttpFlags& flags) {
   command
       .add_option("--ca", flags.ca,
@@ -73,28 +74,40 @@ void add_http_flags(Command& command, HttpFlags& flags) {
                   "to that server alone");
 }
 
-HttpSource::HttpSource(const std::string& url, const HttpFlags& flags)
-    : name_(shown_url(url)), window_(kFirst) {
-  HttpOptions options{url, "", fmt::format("gicodec/{}", kVersionString), flags.ca};
+HttpSource::HttpSource(const std::string& url, const HttpFlags& flags, bool follow)
+    : name_(shown_url(url)), tries_(follow ? kFollowedTries : kTries), window_(kFirst) {
+  HttpOptions options;
+  options.url = url;
+  options.agent = fmt::format("gicodec/{}", kVersionString);
+  options.ca = flags.ca;
   const Token token = read_token(flags.token);
   if (!token.remark.empty()) remark(token.remark);
   options.token = token.text;
-  const bool near = name_.starts_with("http://127.0.0.1") || name_.starts_with("http://localhost");
-  if (!token.text.empty() && name_.starts_with("http:") && !near) {
+  options.direct = is_here(name_);
+  options.is_stopped = is_stopped;
+  if (!token.text.empty() && lower_case(name_).starts_with("http:") && !options.direct) {
     fail(Exit::usage, "{}: a token would go there in clear; use https://", name_);
   }
   file_ = http_module().open(options);
   if (!file_) fail(Exit::internal, "{}: memory ran out", name_);
   begin();
+  if (stream_ && follow) {
+    fail(Exit::io, "{}: the server sends files whole, and --follow needs parts of them", name_);
+  }
 }
 
 /// Brings the file's head and end, or begins to read it in order.
 void HttpSource::begin() {
   const HttpRequest requests[] = {{0, kFirst, false, ""}, {0, kFirst, true, ""}};
-  std::vector<HttpAnswer> answers = ask(requests);
+  std::vector<HttpAnswer> answers = ask_again(requests);
   HttpAnswer &head = answers[0], &end = answers[1];
   if (head.status == 0 || !head.failure.empty()) {
-    fail(Exit::io, "{}: {}; check address and connection", name_, head.failure);
+    const bool tls = head.failure.find("SSL") != std::string::npos;
+    const bool malformed = head.failure.find("illegal format") != std::string::npos;
+    fail(Exit::io, "{}: {}; {}", name_, head.failure,
+         malformed ? "write a space as %20, and a port below 65536"
+         : tls     ? "is it http, or are its authorities a matter of --ca?"
+                   : "check address and connection, and http_proxy if it is set");
   }
   if (head.status != 200 && head.status != 206) {
     fail(Exit::io, "{}: {}", name_, status_text(head));
@@ -108,6 +121,7 @@ void HttpSource::begin() {
       stream_ = file_->stream();
       return;
     }
+    if (head.body.empty()) fail(Exit::bad_input, "{}: is empty; get it again", name_);
     size_ = head.body.size();
     keep(0, std::move(head.body));
     return;
@@ -132,16 +146,36 @@ void HttpSource::begin() {
 
 std::vector<HttpAnswer> HttpSource::ask(std::span<const HttpRequest> requests) {
   std::vector<HttpAnswer> answers = file_->get(requests);
+  check_interrupt();
   cost_.requests += requests.size();
   ++cost_.round_trips;
   for (const HttpAnswer& answer : answers) cost_.bytes += answer.body.size();
   return answers;
 }
 
+/// The same, again where one fails on the way.
+std::vector<HttpAnswer> HttpSource::ask_again(std::span<const HttpRequest> requests) {
+  for (int tries = 0;; ++tries) {
+    std::vector<HttpAnswer> answers = ask(requests);
+    if (tries == tries_ || !is_transient(answers[0])) return answers;
+    pause(tries);
+  }
+}
+
 void HttpSource::keep(std::uint64_t offset, std::vector<std::byte> bytes) {
   if (bytes.empty()) return;
   held_bytes_ += bytes.size();
   held_.emplace(offset, std::move(bytes));
+}
+
+/// Drops pieces where these bytes more would be too many; not the file's head and end.
+void HttpSource::make_room(std::uint64_t bytes) {
+  if (held_bytes_ + bytes <= kMostHeld + 2 * kFirst) return;
+  std::erase_if(held_, [&](const auto& piece) {
+    const bool edge = piece.first == 0 || piece.first + piece.second.size() == *size_;
+    if (!edge) held_bytes_ -= piece.second.size();
+    return !edge;
+  });
 }
 
 const std::vector<std::byte>* HttpSource::piece_at(std::uint64_t offset,
@@ -253,14 +287,18 @@ bool HttpSource::bring(std::span<const ByteRange> ranges) {
     }
   }
   if (requests.empty()) return true;
-  if (held_bytes_ + bytes > kMostHeld + 2 * kFirst) {
-    std::erase_if(held_, [&](const auto& piece) {
-      const bool edge = piece.first == 0 || piece.first + piece.second.size() == *size_;
-      if (!edge) held_bytes_ -= piece.second.size();
-      return !edge;
-    });
+  make_room(bytes);
+  for (std::size_t at = 0; at < requests.size(); at += kTogether) {
+    const std::size_t some = std::min(kTogether, requests.size() - at);
+    const auto first = requests.begin() + static_cast<std::ptrdiff_t>(at);
+    if (!bring({first, first + static_cast<std::ptrdiff_t>(some)})) return false;
   }
-  for (std::size_t tries = 0;; ++tries) {
+  return true;
+}
+
+/// Sends requests, again those that fail on the way.
+bool HttpSource::bring(std::vector<HttpRequest> requests) {
+  for (int tries = 0;; ++tries) {
     std::vector<HttpAnswer> answers = ask(requests);
     std::vector<HttpRequest> again;
     for (std::size_t i = 0; i < answers.size(); ++i) {
@@ -270,12 +308,12 @@ bool HttpSource::bring(std::span<const ByteRange> ranges) {
         continue;
       }
       const bool worth = is_transient(answers[i]) || (is_changed(answers[i]) && has_grown());
-      if (tries == std::size(kPauses) || !worth) return false;
+      if (tries == tries_ || !worth) return false;
       again.push_back(std::move(requests[i]));
       again.back().mark = mark_;
     }
     if (again.empty()) return true;
-    std::this_thread::sleep_for(std::chrono::milliseconds(kPauses[tries]));
+    pause(tries);
     requests = std::move(again);
   }
 }
@@ -287,7 +325,7 @@ bool HttpSource::refresh() {
   constexpr std::uint64_t kOverlap = 64;
   const std::uint64_t known = std::min(kOverlap, *size_), from = *size_ - known;
   const HttpRequest request{from, known + kFirst, false, ""};
-  HttpAnswer answer = std::move(ask({&request, 1})[0]);
+  HttpAnswer answer = std::move(ask_again({&request, 1})[0]);
   if (answer.status != 206 || !answer.failure.empty()) {
     failure_ = answer.status == 0 ? answer.failure : status_text(answer);
     return false;
@@ -305,6 +343,7 @@ bool HttpSource::refresh() {
     return false;
   }
   answer.body.erase(answer.body.begin(), answer.body.begin() + static_cast<std::ptrdiff_t>(known));
+  make_room(answer.body.size());
   keep(*size_, std::move(answer.body));
   size_ = answer.total;
   mark_ = answer.mark;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/token.h"
+#include "common/url.h"
 #include "modules/http.h"
 
 #include <gicodec/io.h>
@@ -13,15 +14,9 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace gicodec::tools {
-
-/// True for a path that names a file on a server: "http://…" or "https://…".
-[[nodiscard]] bool is_url(std::string_view path) noexcept;
-/// A URL for messages: without user, password and what stands behind '?' and '#'.
-[[nodiscard]] std::string shown_url(std::string_view url);
 
 struct HttpFlags {
   TokenFlags token;
@@ -36,8 +31,9 @@ void add_http_flags(Command& command, HttpFlags& flags);
 /// order, and size() has no value.
 class HttpSource final : public Source {
  public:
-  /// Throws Error if the server has no such file, or does not answer.
-  HttpSource(const std::string& url, const HttpFlags& flags);
+  /// Throws Error if the server has no such file, or does not answer. `follow`: waits a minute for
+  /// a server that is away.
+  HttpSource(const std::string& url, const HttpFlags& flags, bool follow = false);
 
   Result<std::size_t> read(std::span<std::byte> into) override;
   [[nodiscard]] std::optional<std::uint64_t> size() const override { return size_; }
@@ -59,19 +55,23 @@ class HttpSource final : public Source {
  private:
   void begin();
   [[nodiscard]] std::vector<HttpAnswer> ask(std::span<const HttpRequest> requests);
+  [[nodiscard]] std::vector<HttpAnswer> ask_again(std::span<const HttpRequest> requests);
   [[nodiscard]] std::vector<ByteRange> missing(std::span<const ByteRange> ranges) const;
   [[nodiscard]] std::vector<ByteRange> joined(std::span<const ByteRange> ranges) const;
   [[nodiscard]] bool bring(std::span<const ByteRange> ranges);
+  [[nodiscard]] bool bring(std::vector<HttpRequest> requests);
   [[nodiscard]] bool is_changed(const HttpAnswer& answer) const;
   [[nodiscard]] bool has_grown();
   [[nodiscard]] std::string fault(const HttpAnswer& answer, const HttpRequest& request) const;
   [[nodiscard]] const std::vector<std::byte>* piece_at(std::uint64_t offset,
                                                        std::size_t& skipped) const;
+  void make_room(std::uint64_t bytes);
   void keep(std::uint64_t offset, std::vector<std::byte> bytes);
 
   std::unique_ptr<HttpFile> file_;
   std::unique_ptr<HttpStream> stream_;  ///< instead of parts
   std::string name_;                    ///< for messages
+  int tries_;                           ///< after the first
   std::optional<std::uint64_t> size_;
   std::string mark_;                                      ///< what changes with the file
   std::map<std::uint64_t, std::vector<std::byte>> held_;  ///< by offset, apart from each other

@@ -23,8 +23,9 @@ namespace fs = std::filesystem;
 using enum FileState::Kind;
 
 bool is_container(std::FILE* file) {
-  std::array<char, 4> magic{};
-  return read_head(file, magic) == magic.size() && magic == std::array{'\x89', 'G', 'I', 'C'};
+  constexpr std::array kMagic{'\x89', 'G', 'I', 'C', '\r', '\n', '\x1a', '\n'};
+  std::array<char, kMagic.size()> magic{};
+  return read_head(file, magic) == magic.size() && magic == kMagic;
 }
 
 /// True unless the output would replace a file that `existing` protects.
@@ -234,6 +235,9 @@ std::FILE* AtomicFile::open_partial(bool restart) {
   if (state && state->kind == regular && state->size == 0) return file.release();
   if (state && state->kind == regular && is_container(file.get())) {
     std::error_code error;
+    if (restart && fs::hard_link_count(native_path(temporary_), error) != 1) {
+      fail(Exit::io, "{}: is in the way, and has other names; remove it", temporary_);
+    }
     if (restart) fs::resize_file(native_path(temporary_), 0, error);
     if (restart && !error) {
       std::rewind(file.get());

@@ -109,7 +109,11 @@ void flush_text(std::FILE* stream) {
 int output_error() noexcept { return first_output_error; }
 
 std::string shell_word(const std::string& word) {
-  const bool plain = word.find_first_of(" \t\n'\"\\$&;|<>()*?[]#~`!") == std::string::npos;
+  constexpr std::string_view kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=:,./@%^";
+  const bool plain = std::all_of(word.begin(), word.end(), [&](char c) {
+    return kPlain.find(c) != std::string_view::npos || static_cast<unsigned char>(c) >= 0x80;
+  });
   if (plain && !word.empty()) return word;
   std::string text = "'";
   for (const char c : word) text += c == '\'' ? "'\\''" : std::string(1, c);

@@ -36,6 +36,8 @@ constexpr const char* kDecodeFooter =
     "--volume takes one by the name, or number, that info lists.\n"
     "\n"
     "Examples:\n"
+    "  gicodec decode https://example.com/day.gic --frames 5000-5010 -o out/\n"
+    "  gicodec decode https://example.com/live.gic --follow --frames 100- -o out/\n"
     "  gicodec decode villa.gic -o out/\n"
     "  gicodec decode villa.gic -o out/ --frames 10-19\n"
     "  gicodec decode recording.gic -o out/ --files ktx2\n"

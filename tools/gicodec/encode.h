@@ -6,6 +6,7 @@
 #include "geometry_flags.h"
 #include "world_flags.h"
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,8 @@ struct EncodeOptions {
   unsigned threads = 1;
 };
 
+/// Adds the command; its options are set by Command::parse().
+std::shared_ptr<const EncodeOptions> add_encode_flags(Cli& cli);
 [[nodiscard]] Exit encode(const EncodeOptions& options, const Cli& cli);
 
 }  // namespace gicodec::tools

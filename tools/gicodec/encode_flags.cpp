@@ -12,7 +12,7 @@ constexpr const char* kEncodeFooter =
     "per texture and frame; a directory stands for all of them in it. PNG, TIFF and DPX are read\n"
     "where every sample is an exact code; they come back as EXR. A container of ours may be\n"
     "replaced, another file never. While it is being written the container is FILE.partial; one\n"
-    "that a killed encode left has to be moved or removed.\n"
+    "that a killed encode left has to be moved or removed, unless --resume is given.\n"
     "\n"
     "Examples:\n"
     "  gicodec encode -o villa.gic dumps/villa/*.exr\n"
@@ -26,7 +26,7 @@ constexpr const char* kEncodeFooter =
 
 }  // namespace
 
-void add_encode(Cli& cli) {
+std::shared_ptr<const EncodeOptions> add_encode_flags(Cli& cli) {
   auto options = std::make_shared<EncodeOptions>();
   Command* command = cli.app.add_command("encode", "Packs dumps into a .gic container");
   command->footer(kEncodeFooter);
@@ -64,6 +64,9 @@ void add_encode(Cli& cli) {
         {"--output", "files", "--jobs", "--resume", "--threads", "--isa", "--help"});
     cli.run = [&cli, options] { return encode(*options, cli); };
   });
+  return options;
 }
+
+void add_encode(Cli& cli) { (void)add_encode_flags(cli); }
 
 }  // namespace gicodec::tools

@@ -5,13 +5,18 @@
 #include "dump/file.h"
 #include "dump/file_system.h"
 #include "dump/text.h"
+#include "encode.h"
+#include "encode_volumes.h"
 #include "verified.h"
+
+#include <gicodec/probes.h>
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <filesystem>
 #include <set>
+#include <span>
 #include <utility>
 
 namespace gicodec::tools {
@@ -101,7 +106,8 @@ class Manifest {
   }
 
   void add(Job job, const std::string& where) {
-    if (!outputs_.insert(job.output).second) {
+    const auto place = std::filesystem::absolute(native_path(job.output)).lexically_normal();
+    if (!outputs_.insert(path_text(place)).second) {
       fail(Exit::bad_input, "{}: {}: another job writes {} too", path_, where, job.output);
     }
     for (const std::string& input : job.inputs) require_exists(input);
@@ -128,26 +134,48 @@ class Manifest {
 
 std::vector<std::string> command_of(const Job& job) {
   std::vector<std::string> words{"gicodec", "encode", "--quiet", "--resume", "-o", job.output};
-  words.insert(words.end(), job.flags.begin(), job.flags.end());
   for (const std::string& input : job.inputs) {
     words.push_back(input.starts_with('-') ? "./" + input : input);
   }
+  words.insert(words.end(), job.flags.begin(), job.flags.end());
   return words;
 }
 
-/// Throws for flags that encode does not take, before a thousand jobs find out.
-void require_command(const std::vector<std::string>& words, const std::string& manifest) {
+/// Throws for flags that encode does not take, as far as that does not depend on the dumps, before
+/// a thousand jobs find out.
+void require_flags(const Job& job, const std::vector<std::string>& words) {
+  for (const std::string& flag : job.flags) {
+    for (const char* const other : {"-o", "--output", "--jobs", "-h", "--help", "--"}) {
+      const std::string_view name(other);
+      if (flag == name || (name.size() > 2 && flag.starts_with(std::string(name) + "="))) {
+        fail(Exit::usage, "{} is none of a job's flags", other);
+      }
+    }
+  }
   Cli probe;
   probe.app.require_command();
   probe.app.add_flag("-q,--quiet", probe.quiet, "");
-  add_encode(probe);
+  const auto options = add_encode_flags(probe);
   std::vector<const char*> arguments;
   for (const std::string& word : words) arguments.push_back(word.c_str());
+  (void)probe.app.parse(static_cast<int>(arguments.size()), arguments.data());
+  if (options->output != job.output || options->inputs.size() != job.inputs.size()) {
+    fail(Exit::usage, "its flags name outputs or dumps; these have keys of their own");
+  }
+  (void)region_of(options->region);
+  (void)layout_volume(options->geometry);
+  (void)make_encoder(options->backend,
+                     probe_texture(Format::A2B10G10R10_UNORM_PACK32, {1, 1, 1}, 8), "", 0, 0, 1);
+}
+
+void require_job(const Job& job, const std::vector<std::string>& words,
+                 const std::string& manifest) {
   try {
-    if (!probe.app.parse(static_cast<int>(arguments.size()), arguments.data())) return;
-    fail(Exit::usage, "--help is none of a job's flags");
+    if (job.output == "-") fail(Exit::usage, "a job writes a file");
+    require_folder(job.output);
+    require_flags(job, words);
   } catch (const Error& error) {
-    fail(Exit::usage, "{}: the job of {}: {}", manifest, words[5], error.what());
+    fail(Exit::usage, "{}: the job of {}: {}", manifest, job.output, error.what());
   }
 }
 
@@ -158,18 +186,23 @@ Exit write_plan(const std::string& path, const Cli& cli) {
   std::string plan;
   for (const Job& job : manifest.jobs()) {
     const auto words = command_of(job);
-    require_command(words, path);
+    require_job(job, words, path);
     std::string line;
     for (const std::string& word : words) {
-      if (word.find('\n') != std::string::npos) {
-        fail(Exit::bad_input, "{}: the job of {}: a line of a plan cannot hold a line's end", path,
+      const auto is_control = [](char c) {
+        return static_cast<unsigned char>(c) < ' ' || c == '\x7f';
+      };
+      if (std::ranges::any_of(word, is_control)) {
+        fail(Exit::bad_input, "{}: the job of {}: names have no control characters in a plan", path,
              job.output);
       }
       line += (line.empty() ? "" : " ") + shell_word(word);
     }
     plan += line + "\n";
   }
-  write_text(stdout, plan);
+  AtomicFile out("-");
+  out.write(std::as_bytes(std::span(plan)));
+  out.commit();
   if (!cli.quiet) {
     const std::size_t count = manifest.jobs().size();
     remark(fmt::format("{}: {} job{}", path, count, count == 1 ? "" : "s"));

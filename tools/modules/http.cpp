@@ -18,6 +18,9 @@ constexpr long kConnections = 8, kRedirects = 5;
 constexpr long kConnectSeconds = 10;
 /// A server that sends fewer bytes a second for so many seconds is given up.
 constexpr long kSlowest = 100, kSlowSeconds = 30;
+/// Milliseconds between questions whether to stop.
+constexpr int kTurn = 200;
+constexpr const char* kStopped = "interrupted";
 /// Bytes that a stream holds at most.
 constexpr std::size_t kAhead = std::size_t{1} << 20;
 
@@ -177,6 +180,7 @@ Easy CurlFile::make(Transfer& transfer, const std::string& mark) const {
     set(CURLOPT_HTTPAUTH, CURLAUTH_BEARER);
     set(CURLOPT_XOAUTH2_BEARER, options_.token.c_str());
   }
+  if (options_.direct) set(CURLOPT_NOPROXY, "*");
   if (!options_.ca.empty()) set(CURLOPT_CAINFO, options_.ca.c_str());
   if (!mark.empty()) {
     transfer.headers.reset(curl_slist_append(nullptr, ("If-Range: " + mark).c_str()));
@@ -223,10 +227,13 @@ void CurlFile::finish(std::vector<Transfer>& transfers) {
   for (int running = 1; running > 0;) {
     CURLMcode code = curl_multi_perform(multi_.get(), &running);
     if (code == CURLM_OK && running > 0) {
-      code = curl_multi_poll(multi_.get(), nullptr, 0, 1000, nullptr);
+      code = curl_multi_poll(multi_.get(), nullptr, 0, kTurn, nullptr);
     }
-    if (code == CURLM_OK) continue;
-    for (Transfer& transfer : transfers) transfer.answer.failure = curl_multi_strerror(code);
+    const bool stopped = options_.is_stopped != nullptr && options_.is_stopped();
+    if (code == CURLM_OK && !stopped) continue;
+    for (Transfer& transfer : transfers) {
+      transfer.answer.failure = stopped ? kStopped : curl_multi_strerror(code);
+    }
     return;
   }
   int left = 0;
@@ -241,7 +248,8 @@ void CurlFile::finish(std::vector<Transfer>& transfers) {
 
 class CurlStream final : public HttpStream {
  public:
-  explicit CurlStream(const CurlFile& file) : multi_(curl_multi_init()) {
+  explicit CurlStream(const CurlFile& file)
+      : multi_(curl_multi_init()), is_stopped_(file.options_.is_stopped) {
     transfer_.easy = file.make(transfer_, {});
     CURL* const easy = transfer_.easy.get();
     if (multi_ == nullptr || easy == nullptr) {
@@ -297,9 +305,10 @@ class CurlStream final : public HttpStream {
       int running = 0;
       CURLMcode code = curl_multi_perform(multi_.get(), &running);
       if (code == CURLM_OK && running > 0 && held_.empty()) {
-        code = curl_multi_poll(multi_.get(), nullptr, 0, 1000, nullptr);
+        code = curl_multi_poll(multi_.get(), nullptr, 0, kTurn, nullptr);
       }
       if (code != CURLM_OK) failure_ = curl_multi_strerror(code);
+      if (is_stopped_ != nullptr && is_stopped_()) failure_ = kStopped;
       int left = 0;
       while (const CURLMsg* const message = curl_multi_info_read(multi_.get(), &left)) {
         ended_ = true;
@@ -310,6 +319,7 @@ class CurlStream final : public HttpStream {
   }
 
   Multi multi_;
+  bool (*is_stopped_)() noexcept;
   Transfer transfer_;
   std::vector<std::byte> held_;
   std::size_t at_ = 0;

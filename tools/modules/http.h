@@ -14,10 +14,12 @@
 namespace gicodec::tools {
 
 struct HttpOptions {
-  std::string url;    ///< http:// or https://
-  std::string token;  ///< goes to the server of the URL alone, not where it redirects to
-  std::string agent;  ///< name and version of the program
-  std::string ca;     ///< file of authorities to trust; empty: the system's
+  std::string url;      ///< http:// or https://
+  std::string token;    ///< goes to the server of the URL alone, not where it redirects to
+  std::string agent;    ///< name and version of the program
+  std::string ca;       ///< file of authorities to trust; empty: the system's
+  bool direct = false;  ///< past any proxy
+  bool (*is_stopped)() noexcept = nullptr;  ///< asked several times a second; true ends requests
 };
 
 /// A request for a part of the file.

@@ -284,6 +284,7 @@ Exit run(const Options& o) {
     tools::print(stderr, "gi-render: {}\n", stream->missing());
   if (stream && !stream->loss().empty() && !o.quiet)
     tools::print(stderr, "gi-render: {}: {}\n", o.stream, stream->loss());
+  if (stream && !o.quiet) stream->remark_cost();
   if (!o.quiet) client.explain(o.output.empty() ? "the picture" : o.output, picture);
   if (!stream || !dumps) {
     write_picture(o.output, picture, client.exposure(), tools::overwrite_if(o.overwrite));

@@ -30,6 +30,10 @@ class StoredVolume {
   StoredVolume(const std::string& path, bool allow_incomplete, const tools::DecoderFlags& decoding);
   /// Opens the dumps of a folder: irradiance and visibility of one frame of probes.
   StoredVolume(const std::string& folder, std::uint64_t frame);
+  /// Of a container on a server: what reading took.
+  void remark_cost() const {
+    if (input_) tools::remark_cost(*input_);
+  }
 
   [[nodiscard]] const std::string& path() const noexcept { return path_; }  ///< for messages
   [[nodiscard]] const TracedKind& kind() const noexcept { return *kind_; }

@@ -3,6 +3,7 @@
 
 #include "client_camera.h"
 #include "client_link.h"
+#include "common/block_box.h"
 #include "renderer.h"
 
 #include <gicodec/client.h>
