@@ -111,5 +111,5 @@ refused 3 'is not a list of texts' '{"flags": "--preset", "jobs": [{"output": "a
 gicodec encode --jobs manifest.json -o x.gic 2>said.txt
 check "no -o beside --jobs" [ $? = 2 ]
 gicodec encode noisy/ 2>said.txt
-check "-o is asked for" grep -q -- "-o is missing" said.txt
+check "-o is asked for" grep -q -- "-o, --output is missing" said.txt
 exit $((failures > 0))

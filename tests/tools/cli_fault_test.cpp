@@ -138,7 +138,7 @@ TEST_F(CliFault, KilledEncoderLeavesAPartialContainer) {
   program_.make_dumps(kFrames);
   program_.succeed({"encode", "-o", "whole.gic", "in"});
   const auto whole = file_bytes(program_.path("whole.gic"));
-  const std::string old = "\x89GIC, but an old one";
+  const std::string old = "\x89GIC\r\n\x1a\n, but an old one";
   const std::string partial = program_.path("x.gic.partial");
   for (const double share : {0.0, 0.1, 0.97}) {  // 0.97 is behind both keyframes.
     write_bytes(program_.path("x.gic"), std::as_bytes(std::span(old)));

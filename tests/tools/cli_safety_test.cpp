@@ -56,7 +56,9 @@ TEST_F(CliSafety, EncodeKeepsItsInputs) {
   fs::create_hard_link(dumps_[1], program_.path("hard.gic"));
   expect_refused(Exit::io, {"encode", "-o", "link.gic", "in"}, {"link.gic"});
   expect_refused(Exit::io, {"encode", "-o", "hard.gic", "in"}, {"hard.gic"});
-  write("list", "\x89GIC");
+  write("list",
+        "\x89GIC\r\n\x1a\n"
+        "");
   expect_refused(Exit::usage, {"encode", "-o", "list", "--inactive", "list", "in"},
                  {"list", "one of the inputs"});
 }

@@ -73,7 +73,8 @@ TEST(File, OutputsThatWouldDestroySomething) {
   const std::string container = directory.path("x.gic"), link = directory.path("link");
   write_file(file, kText);
   write_file(empty, {});
-  write_file(container, std::as_bytes(std::span("\x89GIC")));
+  write_file(container, std::as_bytes(std::span("\x89GIC\r\n\x1a\n"
+                                                "")));
   fs::create_symlink("file", link);
   EXPECT_EQ(refusal(file, {}, Existing::refuse), Exit::io);
   EXPECT_EQ(refusal(link, {}, Existing::refuse), Exit::io);
@@ -105,7 +106,9 @@ TEST(File, NothingIsReplacedInTheEnd) {
 
 TEST(File, OnlyContainersAreReplacedInTheEnd) {
   const TemporaryDirectory directory;
-  for (const std::string_view other : {"another's", "", "\x89GIC"}) {
+  for (const std::string_view other : {"another's", "",
+                                       "\x89GIC\r\n\x1a\n"
+                                       ""}) {
     AtomicFile file(directory.path("x"), Existing::container);
     file.write(kText);
     write_bytes(directory.path("x"), std::as_bytes(std::span(other)));
@@ -127,7 +130,7 @@ TEST(File, WhatAKilledProgramLeftStays) {
   const auto open = [&] {
     AtomicFile(directory.path("x.gic"), Existing::container, AtomicFile::Temporary::partial);
   };
-  for (const std::string_view content : {"\x89GIC and some frames", "something else"}) {
+  for (const std::string_view content : {"\x89GIC\r\n\x1a\n and some frames", "something else"}) {
     write_bytes(left, std::as_bytes(std::span(content)));
     EXPECT_THROW(open(), Error);
     EXPECT_EQ(file_bytes(left).size(), content.size());
@@ -155,7 +158,7 @@ TEST(File, PartialFilesOfOthersStay) {
     {
       AtomicFile file(directory.path("x.gic"), Existing::container, AtomicFile::Temporary::partial);
       fs::remove(partial);
-      write_bytes(partial, std::as_bytes(std::span("\x89GIC of another")));
+      write_bytes(partial, std::as_bytes(std::span("\x89GIC\r\n\x1a\n of another")));
       if (commit) {
         EXPECT_THROW(file.commit(), Error);
       }

@@ -113,7 +113,9 @@ TEST(FileWindows, OneWriterOfAPartialFile) {
   const TemporaryDirectory directory;
   const std::string path = directory.path("x.gic");
   AtomicFile first(path, Existing::refuse, AtomicFile::Temporary::partial);
-  first.write(std::as_bytes(std::span("\x89GIC")));
+  first.write(
+      std::as_bytes(std::span("\x89GIC\r\n\x1a\n"
+                              "")));
   first.sync();
   const auto message = message_of(
       [&] { AtomicFile second(path, Existing::refuse, AtomicFile::Temporary::partial); });

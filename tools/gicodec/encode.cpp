@@ -274,7 +274,7 @@ Exit encode(const EncodeOptions& options, const Cli& cli) {
     }
     return write_plan(options.jobs, cli);
   }
-  if (options.output.empty()) fail(Exit::usage, "-o is missing: the container to write");
+  if (options.output.empty()) fail(Exit::usage, "-o, --output is missing: the container to write");
   if (options.inputs.empty()) fail(Exit::usage, "no dumps are named to be packed");
   // First, because the shell expands -o *.exr to the first dump as output.
   check_output(options.output, {}, Existing::container);
