@@ -378,6 +378,12 @@ TEST(HostileContainer, PartsThatLie) {
     for (SeekEntry& packet : part.packets) packet.frame = 0;
     part.parts[0].frame = 1;
   }));
+  // It may list as many parts as the limit of bytes allows.
+  std::vector<std::byte> body;
+  write_index_part(honest, second, body);
+  const auto rules = packet_rules(sample.description);
+  EXPECT_TRUE(read_index_part(body, rules, 0, second, 1).ok());
+  EXPECT_EQ(read_index_part(body, rules, 0, second, 0).status(), Status::corrupt);
   // The directory is another part, which may be none.
   EXPECT_TRUE(sought([&](auto& part) { part.directory = first; }));
   EXPECT_FALSE(sought([&](auto& part) { part.directory = index.front().offset; }));

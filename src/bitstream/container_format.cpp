@@ -58,8 +58,9 @@ void read_packets(ByteReader& reader, std::span<const PacketRule> rules, std::ui
   }
 }
 
-void read_places(ByteReader& reader, std::uint64_t offset, std::vector<PartPlace>& places) {
-  const auto count = reader.varint(offset / kMinPartEntry);
+void read_places(ByteReader& reader, std::uint64_t offset, std::uint64_t most,
+                 std::vector<PartPlace>& places) {
+  const auto count = reader.varint(std::min(most, offset / kMinPartEntry));
   if (count > reader.rest().size() / kMinPlace) return reader.fail(Status::corrupt);
   places.reserve(static_cast<std::size_t>(count));
   std::uint64_t end = 0, offset_before = 0, frame_before = 0;
@@ -155,7 +156,7 @@ bool is_index_tail(std::span<const std::byte> tail, std::uint64_t offset) noexce
 
 Result<IndexPart> read_index_part(std::span<const std::byte> body,
                                   std::span<const PacketRule> rules, std::uint64_t begin,
-                                  std::uint64_t offset) {
+                                  std::uint64_t offset, std::uint64_t most_parts) {
   if (body.size() < kIndexTail || !is_index_tail(body.last(kIndexTail), offset)) {
     return Status::corrupt;
   }
@@ -164,7 +165,7 @@ Result<IndexPart> read_index_part(std::span<const std::byte> body,
   read_packets(reader, rules, begin, offset, part.packets);
   read_runs(reader, part.needs);
   part.directory = reader.fixed<std::uint64_t>();
-  read_places(reader, offset, part.parts);
+  read_places(reader, offset, most_parts, part.parts);
   const bool directory =
       part.directory == 0 || (!part.parts.empty() && part.parts.front().offset == part.directory);
   if (!reader.ok() || !reader.rest().empty() || !directory) return Status::corrupt;

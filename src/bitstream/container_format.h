@@ -119,9 +119,10 @@ void write_index_part(const IndexPart& part, std::uint64_t offset, std::vector<s
 /// True if `tail`, the last kIndexTail bytes of a body, belongs to the part at `offset`.
 [[nodiscard]] bool is_index_tail(std::span<const std::byte> tail, std::uint64_t offset) noexcept;
 /// Reads the part at `offset`. corrupt unless packets and parts are in order and before it, the
-/// packets from `begin` on.
+/// packets from `begin` on. It may list `most_parts`.
 [[nodiscard]] Result<IndexPart> read_index_part(std::span<const std::byte> body,
                                                 std::span<const PacketRule> rules,
-                                                std::uint64_t begin, std::uint64_t offset);
+                                                std::uint64_t begin, std::uint64_t offset,
+                                                std::uint64_t most_parts = UINT64_MAX);
 
 }  // namespace gicodec

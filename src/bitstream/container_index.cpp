@@ -45,7 +45,8 @@ Result<IndexPart> read_part(EntryReader& reader, std::uint64_t offset, std::uint
   if (!entry.is(EntryType::index) || entry.end() > above) return Status::corrupt;
   if (const Status status = reader.read_body(entry); status != Status::ok) return status;
   size = entry.end() - offset;
-  return read_index_part(entry.bytes, reader.rules(), begin, offset);
+  return read_index_part(entry.bytes, reader.rules(), begin, offset,
+                         reader.limits().max_index_bytes / kBytesPerPart);
 }
 
 }  // namespace
