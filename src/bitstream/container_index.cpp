@@ -12,10 +12,10 @@ namespace {
 /// The search for the last part: bytes from the file's end, bytes read at once, at first and at
 /// most, candidates tried.
 constexpr std::uint64_t kSearch = std::uint64_t{16} << 20;
-constexpr std::uint64_t kWindow = std::uint64_t{48} << 10, kMostWindow = std::uint64_t{2} << 20;
+constexpr std::uint64_t kWindow = std::uint64_t{48} << 10, kMaxWindow = std::uint64_t{2} << 20;
 constexpr int kTries = 16;
 /// Beyond so many packets, parts that were read are dropped for others.
-constexpr std::size_t kMostHeld = std::size_t{1} << 20;
+constexpr std::size_t kMaxHeld = std::size_t{1} << 20;
 /// Of DecodeLimits::max_index_bytes, for each part that is listed: 64 Ki parts by default.
 constexpr std::uint64_t kBytesPerPart = 1024;
 /// Bytes of parts that are read together.
@@ -76,7 +76,7 @@ Status ContainerIndex::find_last_part(EntryReader& reader, std::uint64_t total,
   std::uint64_t step = kWindow;
   for (std::uint64_t end = total; end >= floor + kTail;) {
     const std::uint64_t begin = std::max(floor, end - std::min(end, step));
-    step = std::min(2 * step, kMostWindow);
+    step = std::min(2 * step, kMaxWindow);
     const ByteRange there{begin, end - begin};
     (void)reader.prefetch({&there, 1});
     const auto bytes = reader.bytes(begin, end - begin);
@@ -216,7 +216,7 @@ Status ContainerIndex::read_some(EntryReader& reader, std::size_t first, bool al
 }
 
 void ContainerIndex::make_room(const DecodeLimits& limits) noexcept {
-  if (held_ <= std::min<std::uint64_t>(kMostHeld, limits.max_index_bytes / kMinSeekEntry)) return;
+  if (held_ <= std::min<std::uint64_t>(kMaxHeld, limits.max_index_bytes / kMinSeekEntry)) return;
   for (Part& part : std::span(parts_).first(parts_.size() - 1)) {
     part.packets = {};
     part.read = false;

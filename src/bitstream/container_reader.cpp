@@ -23,7 +23,7 @@ bool by_key(const Start& start, std::uint64_t key) { return start.key < key; }
 /// in the end, and at most.
 constexpr std::uint64_t kFirstPlan = std::uint64_t{64} << 10;
 constexpr std::uint64_t kPlan = std::uint64_t{2} << 20;
-constexpr std::uint64_t kMostPlan = std::uint64_t{16} << 20;
+constexpr std::uint64_t kMaxPlan = std::uint64_t{16} << 20;
 
 }  // namespace
 
@@ -160,7 +160,7 @@ Status ContainerReader::State::plan() {
   for (bool more = true; more && !packets.empty(); packets = index.held_from(at)) {
     for (const SeekEntry& packet : packets) {
       const std::uint64_t end = index.end_of(packet);
-      more = bytes < kMostPlan &&
+      more = bytes < kMaxPlan &&
              (bytes == 0 || packet.frame <= frame || beyond + end - packet.offset <= plan_bytes);
       if (!more) break;
       frame = std::max(frame, bytes == 0 ? packet.frame : frame);

@@ -171,7 +171,7 @@ for fault, says in {
         "changed": "changed while it was read", "place": "other bytes",
         "longer": "other bytes", "shorter": "other bytes", "packed": "packs it (gzip)",
         "ring": "redirects", "cut": "try again", "401": "--token-file", "404": "HTTP 404",
-        "416": "empty", "503": "HTTP 503"}.items():
+        "restless": "changed while it was read", "416": "empty", "503": "HTTP 503"}.items():
     run(*decode, f"{faulty.origin}/{fault}/x.gic", code=4, says=[says])
 run(*decode, f"{faulty.origin}/other/x.gic", code=3)
 run("info", f"{faulty.origin}/endless/x.gic", code=3, says=["is not a .gic container"])

@@ -18,22 +18,22 @@ namespace {
 
 /// Bytes of the first requests, and of what is read in order: at first, and at most.
 constexpr std::uint64_t kFirst = std::uint64_t{64} << 10;
-constexpr std::uint64_t kMostWindow = std::uint64_t{4} << 20;
+constexpr std::uint64_t kMaxWindow = std::uint64_t{4} << 20;
 /// Bytes of a request at most, and those between two ranges that are not worth two requests.
-constexpr std::uint64_t kMostPart = std::uint64_t{4} << 20;
+constexpr std::uint64_t kMaxPart = std::uint64_t{4} << 20;
 constexpr std::uint64_t kGap = std::uint64_t{16} << 10;
 /// Bytes that are held at most, beside the file's head and end.
-constexpr std::uint64_t kMostHeld = std::uint64_t{64} << 20;
+constexpr std::uint64_t kMaxHeld = std::uint64_t{64} << 20;
 /// Requests that are sent together.
 constexpr std::size_t kTogether = 64;
 /// A request that fails on the way is sent again so often, and of a file that is followed; after so
 /// many milliseconds, later twice as many, at most.
 constexpr int kTries = 2, kFollowedTries = 40;
-constexpr int kPause = 200, kMostPause = 2000;
+constexpr int kPause = 200, kMaxPause = 2000;
 
 void pause(int tries) {
-  const int time = tries < 4 ? kPause << tries : kMostPause;
-  std::this_thread::sleep_for(std::chrono::milliseconds(std::min(time, kMostPause)));
+  const int time = tries < 4 ? kPause << tries : kMaxPause;
+  std::this_thread::sleep_for(std::chrono::milliseconds(std::min(time, kMaxPause)));
 }
 
 bool is_transient(const HttpAnswer& answer) {
@@ -83,7 +83,7 @@ HttpSource::HttpSource(const std::string& url, const HttpFlags& flags, bool foll
   const Token token = read_token(flags.token);
   if (!token.remark.empty()) remark(token.remark);
   options.token = token.text;
-  options.direct = is_here(name_);
+  options.direct = is_loopback(host_of(name_));
   options.is_stopped = is_stopped;
   if (!token.text.empty() && lower_case(name_).starts_with("http:") && !options.direct) {
     fail(Exit::usage, "{}: a token would go there in clear; use https://", name_);
@@ -170,7 +170,7 @@ void HttpSource::keep(std::uint64_t offset, std::vector<std::byte> bytes) {
 
 /// Drops pieces where these bytes more would be too many; not the file's head and end.
 void HttpSource::make_room(std::uint64_t bytes) {
-  if (held_bytes_ + bytes <= kMostHeld + 2 * kFirst) return;
+  if (held_bytes_ + bytes <= kMaxHeld + 2 * kFirst) return;
   std::erase_if(held_, [&](const auto& piece) {
     const bool edge = piece.first == 0 || piece.first + piece.second.size() == *size_;
     if (!edge) held_bytes_ -= piece.second.size();
@@ -206,7 +206,7 @@ Result<std::size_t> HttpSource::read(std::span<std::byte> into) {
       if (!bring(missing(std::vector<ByteRange>{{at_ + got, std::max(rest, window_)}}))) {
         return Status::io_failed;
       }
-      window_ = std::min(2 * window_, kMostWindow);
+      window_ = std::min(2 * window_, kMaxWindow);
       continue;
     }
     const std::size_t some = std::min(wanted - got, piece->size() - skipped);
@@ -279,8 +279,8 @@ bool HttpSource::bring(std::span<const ByteRange> ranges) {
   std::vector<HttpRequest> requests;
   std::uint64_t bytes = 0;
   for (const ByteRange& range : joined(ranges)) {
-    for (std::uint64_t done = 0; done < range.size && bytes < kMostHeld;) {
-      const std::uint64_t size = std::min(range.size - done, kMostPart);
+    for (std::uint64_t done = 0; done < range.size && bytes < kMaxHeld;) {
+      const std::uint64_t size = std::min(range.size - done, kMaxPart);
       requests.push_back({range.offset + done, size, false, mark_});
       done += size;
       bytes += size;
@@ -332,7 +332,9 @@ bool HttpSource::refresh() {
   }
   std::vector<std::byte> before(static_cast<std::size_t>(known));
   const std::uint64_t at = std::exchange(at_, from);
+  refreshing_ = true;
   const auto got = read(before);
+  refreshing_ = false;
   at_ = at;
   const bool grown = answer.total > size_ || (answer.total == size_ && answer.mark == mark_);
   const bool same = got.ok() && answer.first == from && grown &&
@@ -358,6 +360,7 @@ bool HttpSource::is_changed(const HttpAnswer& answer) const {
 
 /// True if the file is the same with more at its end. Keeps failure_.
 bool HttpSource::has_grown() {
+  if (refreshing_) return false;  // else a server that changes its mind each time never ends
   const std::string failure = failure_;
   const auto before = size_;
   const bool grown = refresh() && *size_ > *before;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/token.h"
-#include "common/url.h"
+#include "dump/url.h"
 #include "modules/http.h"
 
 #include <gicodec/io.h>
@@ -77,6 +77,7 @@ class HttpSource final : public Source {
   std::map<std::uint64_t, std::vector<std::byte>> held_;  ///< by offset, apart from each other
   std::uint64_t held_bytes_ = 0;
   std::uint64_t at_ = 0;
+  bool refreshing_ = false;
   std::uint64_t window_;  ///< bytes to ask for where nothing was planned
   std::string failure_;
   Cost cost_;

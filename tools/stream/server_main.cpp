@@ -10,6 +10,7 @@
 #include "dump/dump.h"
 #include "dump/error.h"
 #include "dump/text.h"
+#include "dump/url.h"
 #include "feed_fit.h"
 #include "loading.h"
 #include "log.h"
@@ -225,7 +226,7 @@ void take_addresses(ServerFlags& o) {
   if (o.insecure_web && !o.web.certificate.empty())
     fail(Exit::usage,
          "--insecure-web is for a server without a certificate; leave one of them out");
-  if (o.insecure_web && !is_loopback(o.web.address.host))
+  if (o.insecure_web && !tools::is_loopback(o.web.address.host))
     fail(Exit::usage,
          "--insecure-web: {} can be reached from other machines, and nothing would be encrypted; "
          "use --certificate and --key, or listen on 127.0.0.1 or [::1]",

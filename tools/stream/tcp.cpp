@@ -1,6 +1,7 @@
 #include "tcp.h"
 
 #include "dump/error.h"
+#include "dump/url.h"
 
 #include <arpa/inet.h>
 #include <linux/sockios.h>
@@ -53,7 +54,7 @@ TcpPeer peer_of(const sockaddr_storage& from) {
     port = ntohs(ip.sin_port);
   }
   const std::string host = text_of(AF_INET, &v4);
-  return {fmt::format("{}:{}", host, port), host, is_loopback(host)};
+  return {fmt::format("{}:{}", host, port), host, tools::is_loopback(host)};
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include "dump/error.h"
 #include "dump/file.h"
+#include "dump/url.h"
 
 #include <fmt/format.h>
 
@@ -43,7 +44,7 @@ Address parse_server(const std::string& text, const char* flag) {
   if (rest.ends_with('/')) rest.pop_back();
   Address address = parse_address(rest, flag);
   address.via = secure ? Via::web : Via::plain_web;
-  if (plain && !is_loopback(address.host)) {
+  if (plain && !tools::is_loopback(address.host)) {
     fail(Exit::usage,
          "{}: ws:// is not encrypted and only for this machine itself; use wss://{} and a server "
          "with a certificate",
@@ -59,11 +60,6 @@ std::string to_string(const Address& address) {
                      : address.via == Via::plain_web ? kPlain
                                                      : std::string_view(),
                      bracketed ? "[" : "", address.host, bracketed ? "]" : "", address.port);
-}
-
-bool is_loopback(const std::string& host) {
-  const bool digits = host.find_first_not_of("0123456789.") == std::string::npos;
-  return host == "localhost" || host == "::1" || (digits && host.starts_with("127."));
 }
 
 void write_ports(const std::string& path, const std::vector<std::uint16_t>& ports) {

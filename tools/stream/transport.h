@@ -30,8 +30,6 @@ struct Address {
 [[nodiscard]] Address parse_server(const std::string& text, const char* flag);
 /// In the form of parse_server().
 [[nodiscard]] std::string to_string(const Address& address);
-/// True for names of this machine: 127.0.0.0/8, ::1 or localhost.
-[[nodiscard]] bool is_loopback(const std::string& host);
 
 /// Writes a file with the ports, one per line, for scripts; an empty path: none. Throws
 /// tools::Error if the file exists and holds anything but ports.

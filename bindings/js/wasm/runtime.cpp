@@ -47,7 +47,7 @@ struct Piece {
 };
 
 /// Ranges that are told to the caller at once.
-constexpr std::size_t kMostMissing = 256;
+constexpr std::size_t kMaxMissing = 256;
 
 /// A container of which pieces are there: the caller brings those that reads miss.
 struct {
@@ -55,7 +55,7 @@ struct {
   std::size_t count, capacity;
   std::size_t held;  ///< bytes of all pieces
   std::uint64_t size, at;
-  gicodec_range missing[kMostMissing];  ///< what is to be brought
+  gicodec_range missing[kMaxMissing];  ///< what is to be brought
   std::size_t missing_count;
   bool failed;  ///< a read lacked bytes
 } ranges;
@@ -80,7 +80,7 @@ std::uint64_t known_until(std::uint64_t at) {
 
 /// Lists what is missing between these offsets.
 void want(std::uint64_t at, std::uint64_t end) {
-  while (at < end && ranges.missing_count < kMostMissing) {
+  while (at < end && ranges.missing_count < kMaxMissing) {
     if (const std::uint64_t known = known_until(at)) {
       at = known;
       continue;

@@ -1,6 +1,6 @@
 #include "url.h"
 
-#include "dump/text.h"
+#include "text.h"
 
 namespace gicodec::tools {
 
@@ -17,12 +17,16 @@ std::string shown_url(std::string_view url) {
   return std::string(url.substr(0, scheme)) + std::string(rest);
 }
 
-bool is_here(std::string_view url) {
+std::string host_of(std::string_view url) {
   std::string_view host = url.substr(url.find("://") + 3);
   host = host.substr(0, host.find('/'));
-  host =
-      host.starts_with('[') ? host.substr(0, host.find(']') + 1) : host.substr(0, host.find(':'));
-  return host == "127.0.0.1" || host == "localhost" || host == "[::1]";
+  if (host.starts_with('[')) return std::string(host.substr(1, host.find(']') - 1));
+  return std::string(host.substr(0, host.find(':')));
+}
+
+bool is_loopback(std::string_view host) {
+  const bool digits = host.find_first_not_of("0123456789.") == std::string_view::npos;
+  return host == "localhost" || host == "::1" || (digits && host.starts_with("127."));
 }
 
 }  // namespace gicodec::tools
