@@ -196,7 +196,10 @@ Exit write_plan(const std::string& path, const Cli& cli) {
         fail(Exit::bad_input, "{}: the job of {}: names have no control characters in a plan", path,
              job.output);
       }
-      line += (line.empty() ? "" : " ") + shell_word(word);
+      if (!line.empty()) {
+        line += ' ';
+      }
+      line += shell_word(word);
     }
     plan += line + "\n";
   }
