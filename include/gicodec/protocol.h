@@ -183,8 +183,48 @@ struct UpdateMessage {
   std::vector<Proof> proofs = {};    ///< hashes for the client to check; usually none
 };
 
+// Tracks: shared streams for receivers that the publisher does not know, see tracks.h.
+
+/// Consecutive regions of a texture, and the update in which each last changed.
+struct TrackRun {
+  StreamId first = {};      ///< of shared delivery
+  std::uint32_t count = 1;  ///< of regions, from the first one on
+  std::uint64_t age = 0;    ///< updates from the change to that of the message, and no fewer
+};
+
+/// What a receiver begins with: the volumes, and the last snapshot of each track.
+struct TrackList {
+  std::uint64_t epoch = 0, update = 0;
+  std::uint64_t round = 0;     ///< the snapshots have all changes up to this update
+  std::uint64_t position = 0;  ///< of later objects, in the transport's count; 0: not known
+  SceneId scene = {};
+  std::uint32_t generation = 0;
+  std::vector<DescribedVolume> volumes = {};
+  std::vector<TrackRun> snapshots = {};  ///< their ages
+};
+
+/// A track's part of one update, or a snapshot of it.
+struct TrackObject {
+  std::uint64_t epoch = 0, update = 0;
+  std::uint64_t previous = 0;  ///< update of the object on which this one builds; 0: a snapshot
+  std::uint32_t generation = 0;
+  StreamId stream = {};
+  std::vector<std::span<const std::byte>> packets = {};  ///< into the bytes of read_message()
+  std::vector<std::uint64_t> proof = {};                 ///< one hash as in UpdateMessage, or none
+};
+
+/// The end of an update: all its objects came before.
+struct TrackTick {
+  std::uint64_t epoch = 0, update = 0;
+  double time = 0;
+  std::uint32_t generation = 0;
+  std::vector<Scroll> scrolls = {};    ///< as in UpdateMessage
+  std::uint64_t round = 0;             ///< TrackList::round of the last list
+  std::vector<TrackRun> changed = {};  ///< tracks that changed after `round`
+};
+
 using AnyMessage = std::variant<Hello, Resync, Acknowledge, Viewpoint, Subscribe, Goodbye, Welcome,
-                                UpdateMessage, Volumes>;
+                                UpdateMessage, Volumes, TrackList, TrackObject, TrackTick>;
 
 /// What read_message() accepts. It checks before it allocates.
 struct MessageLimits {

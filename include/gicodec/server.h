@@ -66,8 +66,7 @@ struct ServerLimits {
   std::uint64_t max_total_bytes_per_second = 0;
 };
 
-/// Seconds.
-struct ServerTimeouts {
+struct ServerTimeouts {  // seconds
   double hello = 5;    ///< from connection to Hello
   double stall = 20;   ///< without an acknowledgement while updates are in flight
   double linger = 30;  ///< for which a session outlives its connection
@@ -230,8 +229,8 @@ class Server {
   [[nodiscard]] std::uint64_t updates() const noexcept;  ///< their number so far
   [[nodiscard]] WrittenBlocks written() const noexcept;  ///< by the last update
 
-  [[nodiscard]] Result<std::vector<ConnectionId>> connections()
-      const;  ///< those with a session; out_of_memory
+  /// Those with a session; out_of_memory.
+  [[nodiscard]] Result<std::vector<ConnectionId>> connections() const;
   [[nodiscard]] std::optional<ClientId> client(ConnectionId connection) const;
   /// The client's last Viewpoint, if it sent one.
   [[nodiscard]] std::optional<Viewpoint> viewpoint(ConnectionId connection) const;
@@ -242,6 +241,7 @@ class Server {
   [[nodiscard]] std::size_t memory() const noexcept;  ///< bytes held for all
 
  private:
+  friend class TrackPublisher;
   struct GICODEC_LOCAL State;
   explicit Server(std::unique_ptr<State> state) noexcept;
   std::unique_ptr<State> state_;

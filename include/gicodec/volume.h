@@ -85,6 +85,8 @@ class RegionGrid {
   /// The block index of block `number` of a region, and the inverse.
   [[nodiscard]] std::uint32_t block_of(std::uint32_t region, std::uint32_t number) const noexcept;
   [[nodiscard]] std::uint32_t number_of(std::uint32_t block) const noexcept;
+  /// The place of a region among the regions.
+  [[nodiscard]] Grid place_of(std::uint32_t region) const noexcept;
   /// The place of a region's first block, in blocks along each axis.
   [[nodiscard]] Grid first_of(std::uint32_t region) const noexcept;
 

@@ -12,6 +12,8 @@ namespace gicodec {
 namespace {
 
 constexpr std::uint32_t kMagic = 0x73636967;  // "gics"
+/// Of an object: a delta, and an intra update of blocks that moved.
+constexpr std::size_t kMaxTrackPackets = 2;
 constexpr std::uint8_t kLastReason = static_cast<std::uint8_t>(Reason::unicast_full);
 
 /// A message to read into, or a const one to write.
@@ -226,6 +228,13 @@ void fields(Archive& archive, M& m) {
 }
 
 template <typename Archive>
+void scrolls(Archive& archive, auto& list) {
+  items(archive, list, kMaxVolumes, 3, [&](auto& scroll) {
+    for (auto& cells : scroll) archive.signed_number(cells);
+  });
+}
+
+template <typename Archive>
 void update_head(Archive& archive, auto& m) {
   archive.number(m.sync);
   archive.number(m.number);
@@ -236,9 +245,7 @@ void update_rest(Archive& archive, auto& m) {
   archive.number(m.generation);
   archive.number(m.update);
   archive.real(m.time);
-  items(archive, m.scrolls, kMaxVolumes, 3, [&](auto& scroll) {
-    for (auto& cells : scroll) archive.signed_number(cells);
-  });
+  scrolls(archive, m.scrolls);
   items(archive, m.parts, kMaxBytes, 5, [&](auto& part) {
     stream_id(archive, part.stream);
     archive.fixed(part.tier);
@@ -249,6 +256,63 @@ void update_rest(Archive& archive, auto& m) {
     stream_id(archive, proof.stream);
     archive.fixed(proof.hash);
   });
+}
+
+/// Runs of tracks, ascending and apart, none older than `update`.
+template <typename Archive>
+void track_runs(Archive& archive, auto& runs, std::uint64_t update) {
+  items(archive, runs, kMaxBytes, 5, [&](auto& run) {
+    stream_id(archive, run.first);
+    archive.number(run.count);
+    archive.number(run.age);
+    archive.check(run.count > 0 && run.age <= update &&
+                  run.first.region <= StreamId::kWholeVolume - run.count);
+  });
+  for (std::size_t i = 1; i < runs.size(); ++i) {
+    StreamId end = runs[i - 1].first;
+    end.region += runs[i - 1].count;
+    archive.check(end <= runs[i].first);
+  }
+}
+
+template <typename Archive, FieldsOf<TrackList> M>
+void fields(Archive& archive, M& m) {
+  magic(archive);
+  archive.fixed(m.epoch);
+  archive.number(m.update);
+  archive.number(m.round);
+  archive.check(m.round <= m.update);
+  archive.number(m.position);
+  archive.text(m.scene.name, kMaxName);
+  archive.fixed(m.scene.geometry);
+  volumes(archive, m);
+  track_runs(archive, m.snapshots, m.update);
+}
+
+template <typename Archive, FieldsOf<TrackObject> M>
+void fields(Archive& archive, M& m) {
+  archive.fixed(m.epoch);
+  archive.number(m.generation);
+  archive.number(m.update);
+  archive.number(m.previous);
+  archive.check(m.previous < m.update);
+  stream_id(archive, m.stream);
+  archive.check(m.stream.region != StreamId::kWholeVolume);
+  items(archive, m.packets, kMaxTrackPackets, 1, [&](auto& packet) { archive.bytes(packet); });
+  archive.check(!m.packets.empty());
+  items(archive, m.proof, 1, 8, [&](auto& hash) { archive.fixed(hash); });
+}
+
+template <typename Archive, FieldsOf<TrackTick> M>
+void fields(Archive& archive, M& m) {
+  archive.fixed(m.epoch);
+  archive.number(m.generation);
+  archive.number(m.update);
+  archive.real(m.time);
+  scrolls(archive, m.scrolls);
+  archive.number(m.round);
+  archive.check(m.round <= m.update);
+  track_runs(archive, m.changed, m.update);
 }
 
 template <typename Archive, FieldsOf<UpdateMessage> M>
@@ -270,44 +334,6 @@ Status read(std::size_t wanted, Reader& reader, AnyMessage& message) {
 }
 
 }  // namespace
-
-std::string_view to_string(Reason reason) noexcept {
-  switch (reason) {
-    case Reason::left:
-      return "it left";
-    case Reason::version:
-      return "it speaks another protocol version";
-    case Reason::token:
-      return "the token is wrong";
-    case Reason::full:
-      return "no more clients are taken";
-    case Reason::malformed:
-      return "it sent a malformed message";
-    case Reason::too_large:
-      return "it sent a message that is too large";
-    case Reason::flood:
-      return "it sent too many messages";
-    case Reason::out_of_order:
-      return "it sent a message out of order";
-    case Reason::unknown_volume:
-      return "it asked for a volume that does not exist";
-    case Reason::silent:
-      return "it said no hello in time, or others needed its place";
-    case Reason::stalled:
-      return "it does not take its updates";
-    case Reason::shutdown:
-      return "the server ends";
-    case Reason::replaced:
-      return "its session goes on over another connection";
-    case Reason::dismissed:
-      return "the server's operator ended it";
-    case Reason::exhausted:
-      return "the server has no memory for it";
-    case Reason::unicast_full:
-      return "no more unicast clients are taken";
-  }
-  return "unknown reason";
-}
 
 // A message is its type (index in AnyMessage, from 1 on) and its fields.
 

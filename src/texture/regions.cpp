@@ -5,9 +5,13 @@
 
 namespace gicodec {
 
+Grid RegionGrid::place_of(std::uint32_t region) const noexcept {
+  return {region % count_.x, region / count_.x % count_.y, region / (count_.x * count_.y)};
+}
+
 Grid RegionGrid::first_of(std::uint32_t region) const noexcept {
-  return {region % count_.x * size_.x, region / count_.x % count_.y * size_.y,
-          region / (count_.x * count_.y) * size_.z};
+  const Grid place = place_of(region);
+  return {place.x * size_.x, place.y * size_.y, place.z * size_.z};
 }
 
 Grid RegionGrid::grid_of(std::uint32_t region) const noexcept {

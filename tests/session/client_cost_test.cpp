@@ -1,5 +1,5 @@
-// What a server may cost a client: never more memory than its limit, no stream twice in a message,
-// no more work than allowed.
+// What a server may cost a client: never more memory, and in a message never more work, than its
+// limits.
 #include "../allocation_counter.h"
 #include "../messages.h"
 #include "support.h"
@@ -156,7 +156,7 @@ ClientFrame frame_of(const Welcome& welcome) {
   return frame;
 }
 
-TEST_F(ClientCost, StreamsComeOnce) {
+TEST_F(ClientCost, WhatComesTwiceCountsTwice) {
   make("native");
   const auto said = messages(*Client::create({})->hello(), Delivery::unicast);
   const auto client_after = [&](const AnyMessage& changed, const ClientOptions& options) {
@@ -172,15 +172,19 @@ TEST_F(ClientCost, StreamsComeOnce) {
   EXPECT_EQ(client_after(update, {}), Status::ok);
   auto twice = update;
   twice.parts.push_back(twice.parts[0]);
-  EXPECT_EQ(client_after(twice, {}), Status::corrupt);
+  const auto work = [frame = frame_of(std::get<Welcome>(*read_message(said[0])))](
+                        const UpdateMessage& one) { return update_work(one, frame); };
+  UpdateMessage single = update;
+  single.parts.resize(1);
+  EXPECT_EQ(work(twice), work(update) + work(single));
   auto proven = update;
   proven.proofs = {{update.parts[0].stream, 1}, {update.parts[0].stream, 1}};
   EXPECT_EQ(client_after(proven, {}), Status::corrupt);
   // Of keyframes all blocks count twice: as cleared and as written.
   ClientOptions options;
-  options.limits.max_work_bytes =
-      update_work(update, frame_of(std::get<Welcome>(*read_message(said[0]))));
+  options.limits.max_work_bytes = work(update);
   EXPECT_EQ(client_after(update, options), Status::ok);
+  EXPECT_EQ(client_after(twice, options), Status::limit_exceeded);
   options.limits.max_work_bytes -= 1;
   EXPECT_EQ(client_after(update, options), Status::limit_exceeded);
 }

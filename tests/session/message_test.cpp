@@ -87,11 +87,23 @@ Ticket random_ticket(Random& random) {
   return ticket;
 }
 
+/// Ascending, of messages of update 900.
+std::vector<TrackRun> random_runs(Random& random) {
+  std::vector<TrackRun> runs(pick(random, 0, 5));
+  std::uint32_t region = 0;
+  for (TrackRun& run : runs) {
+    region += pick(random, 0, 50);
+    run = {{3, 1, region}, pick(random, 1, 40), pick(random, 0, 900)};
+    region += run.count;
+  }
+  return runs;
+}
+
 /// `packet`: what the parts of an update refer to.
 AnyMessage random_message(Random& random, const Bytes& packet) {
   const auto number = [&] { return static_cast<std::uint32_t>(random()); };
   const auto delivery = [&] { return chance(random, 2) ? Delivery::unicast : Delivery::shared; };
-  switch (pick(random, 0, 8)) {
+  switch (pick(random, 0, 11)) {
     case 0:
       return Hello{number(),
                    chance(random, 2) ? Ticket{} : random_ticket(random),
@@ -122,6 +134,35 @@ AnyMessage random_message(Random& random, const Bytes& packet) {
                      kEdition,          random_volumes(random)};
     case 7:
       return Volumes{kEdition, random_volumes(random)};
+    case 8:
+      return TrackList{random(),
+                       900,
+                       pick(random, 0, 900),
+                       random(),
+                       {random_text(random, kMaxName), random()},
+                       kEdition,
+                       random_volumes(random),
+                       random_runs(random)};
+    case 9: {
+      const std::uint64_t update = pick(random, 1, 900);
+      TrackObject object{random(),
+                         update,
+                         pick(random, 0, static_cast<std::uint32_t>(update - 1)),
+                         number(),
+                         random_stream(random),
+                         {},
+                         {}};
+      if (object.stream.region == StreamId::kWholeVolume) object.stream.region = 0;
+      for (std::uint32_t i = 0, packets = pick(random, 1, 2); i < packets; ++i)
+        object.packets.push_back(std::span<const std::byte>(packet).first(packet.size() / (i + 1)));
+      if (chance(random, 2)) object.proof = {random()};
+      return object;
+    }
+    case 10: {
+      TrackTick tick{random(), 900, 12.5, number(), {}, pick(random, 0, 900), random_runs(random)};
+      tick.scrolls.resize(pick(random, 0, 3), {-kMaxScroll, 0, kMaxScroll});
+      return tick;
+    }
     default: {
       UpdateMessage update{number(), number(), number(), random(), 12.5, {}, {}, {}};
       update.scrolls.resize(pick(random, 0, 3), {-kMaxScroll, 0, kMaxScroll});

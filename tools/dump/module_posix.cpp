@@ -4,6 +4,7 @@
 #include "modules/hevc.h"
 #include "modules/http.h"
 #include "modules/images.h"
+#include "modules/nats.h"
 
 #include <dlfcn.h>
 #include <elf.h>
@@ -90,6 +91,12 @@ const ImageModule& image_module() {
 const HttpModule& http_module() {
   static const auto* const module =
       reinterpret_cast<const HttpModule*>(load_module("gicodec-http", "files on servers"));
+  return *module;
+}
+
+const NatsModule& nats_module() {
+  static const auto* const module =
+      reinterpret_cast<const NatsModule*>(load_module("gicodec-nats", "NATS"));
   return *module;
 }
 

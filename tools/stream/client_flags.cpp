@@ -2,6 +2,7 @@
 
 #include "dump/dump.h"
 #include "dump/error.h"
+#include "nats_flags.h"
 
 #include <charconv>
 #include <limits>
@@ -17,8 +18,15 @@ void add_client_flags(tools::Command& app, ClientFlags& o) {
   app.add_option("--connect", o.connect,
                  "The server: over ENet, over WebSockets and TLS with wss:// in front, or in clear "
                  "on this machine with ws://")
-      ->type_name("[wss://]ADDR:PORT")
-      ->required();
+      ->type_name("[wss://]ADDR:PORT");
+  add_nats_flags(app, o.viewer.link.net.nats,
+                 "Instead of --connect: receive what a gi-server with --nats publishes",
+                 "Over NATS");
+  app.add_option("--reach", o.viewer.link.net.reach,
+                 "With --nats: how far from the camera light is received, in world units, the "
+                 "nearest first; 0: all")
+      ->allow(tools::in_range(0.0F, 1e9F))
+      ->group("Over NATS");
   app.add_option("--ca", o.viewer.link.net.trust.ca,
                  "wss://: PEM file of authorities that may vouch for the server; default: the "
                  "system's")

@@ -157,10 +157,18 @@ void ClientLink::lost() {
            losses_ < kManyLosses ? "" : kIfSlow);
 }
 
-void ClientLink::serve(Net& net, Link link) {
+bool ClientLink::greet(Net& net, Link link) {
   const auto hello = client_.hello();
-  if (!hello) return fail(std::string(to_string(hello.status())));
+  if (!hello) {
+    fail(std::string(to_string(hello.status())));
+    return false;
+  }
   net.send(link, {*hello});
+  return true;
+}
+
+void ClientLink::serve(Net& net, Link link) {
+  if (!greet(net, link)) return;
   ++connections_;
   state_ = State::open;
   double viewed = now();
@@ -173,6 +181,7 @@ void ClientLink::serve(Net& net, Link link) {
         if (!over()) lost();
         return;
       }
+      if (event.type == NetEvent::Type::renewed && !greet(net, link)) return;
       if (event.type != NetEvent::Type::received) continue;
       const Status status = client_.push(std::move(event.message));
       if (status == Status::limit_exceeded) {

@@ -64,6 +64,8 @@ class ClientLink {
   void run();
   [[nodiscard]] Link connect(Net& net);
   void serve(Net& net, Link link);
+  /// Sends a Hello; false if memory ran out.
+  bool greet(Net& net, Link link);
   void send_messages(Net& net, Link link);
   void say_goodbye(Net& net, Link link);
   void leave(Net& net, Link link);

@@ -13,6 +13,8 @@
 #include "dump/text.h"
 #include "loading.h"
 #include "log.h"
+#include "nats_flags.h"
+#include "nats_tracks.h"
 #include "programs/kind_flags.h"
 #include "simulate.h"
 #include "tls.h"
@@ -164,8 +166,35 @@ Loaded load(const ClientFlags& o, const ddgi::RenderOptions& render) {
   return loaded;
 }
 
+/// Reads where the server is, or the servers of NATS.
+void take_server(ClientFlags& o) {
+  const NatsFlags& nats = o.viewer.link.net.nats;
+  check_nats_flags(nats);
+  if (o.connect.empty() == nats.urls.empty())
+    fail(Exit::usage, "{}",
+         o.connect.empty()
+             ? "--connect ADDR:PORT says where the server is, or --nats URL where NATS is"
+             : "--connect and --nats exclude each other; name one of them");
+  if (nats.urls.empty()) {
+    if (o.viewer.link.net.reach > 0) fail(Exit::usage, "--reach is for --nats");
+    o.viewer.link.server = parse_server(o.connect, "--connect");
+    return;
+  }
+  static_cast<void>(nats_urls(nats.urls, "--nats"));
+  const Budget& budget = o.viewer.client.budget;
+  if (budget.blocks > 0 || budget.bytes > 0)
+    fail(Exit::usage,
+         "--budget-blocks and --budget-bytes are for --connect; --reach limits what "
+         "comes over NATS");
+  if (!o.token.token.empty() || !o.token.file.empty())
+    fail(Exit::usage, "a token is for --connect; NATS has --nats-user and --nats-password-file");
+  o.connect = nats.urls;
+  o.viewer.link.server = {nats.urls, 0, Via::nats};
+  o.delivery = "shared";
+}
+
 Exit run(ClientFlags& o) {
-  o.viewer.link.server = parse_server(o.connect, "--connect");
+  take_server(o);
   Trust& trust = o.viewer.link.net.trust;
   if (o.viewer.link.server.via != Via::web && (!trust.ca.empty() || !o.pin.empty()))
     fail(Exit::usage, "--ca and --pin are for --connect wss://...");
@@ -254,6 +283,7 @@ int main(int argc, char** argv) {
       "  gi-client --connect 127.0.0.1:4600 --updates 100 --expect-proofs\n"
       "  gi-client --connect 127.0.0.1:4600 --seconds 60 --record minute.gic\n"
       "  gi-client --connect wss://probes.example.org:8443 --token-file ada --scene villa\n"
+      "  gi-client --nats nats://127.0.0.1:4222 --scene villa --reach 10 --frames 50 -o pictures\n"
       "  gi-client --connect 127.0.0.1:4600 --scene villa --simulate 50 --discard --seconds 10\n");
   return tools::run_program(app, argc, argv, [&] { return run(options); });
 }

@@ -2,6 +2,7 @@
 
 #include <poll.h>
 
+#include <algorithm>
 #include <array>
 
 namespace gicodec::streaming {
@@ -23,16 +24,26 @@ Net::Net(const std::optional<Address>& enet, const std::optional<WebListen>& web
 }
 
 Net::Net(Via via, const NetOptions& options) {
-  if (via == Via::enet) {
-    enet_ = std::make_unique<Enet>(options);
-  } else {
-    web_ = std::make_unique<Web>(options);
-  }
+  options_ = options;
+  if (via == Via::enet) enet_ = std::make_unique<Enet>(options);
+  if (via == Via::web || via == Via::plain_web) web_ = std::make_unique<Web>(options);
 }
 
 Link Net::connect(const Address& address) {
-  if (address.via == Via::enet) return {enet_->connect(address), nullptr};
-  return {nullptr, web_->connect(address)};
+  if (address.via == Via::enet) return {enet_->connect(address)};
+  if (address.via != Via::nats) return {nullptr, web_->connect(address)};
+  nats_.push_back(std::make_unique<NatsReceiver>(options_.nats, options_.reach, options_.timeout));
+  return {nullptr, nullptr, nats_.back().get()};
+}
+
+/// Waits at one of them, in turn.
+bool Net::next_of_nats(NetEvent& event, unsigned milliseconds) {
+  for (const auto& link : nats_) {
+    if (link->next(event, 0)) return true;
+  }
+  if (nats_.empty() || milliseconds == 0) return false;
+  std::rotate(nats_.begin(), nats_.begin() + 1, nats_.end());
+  return nats_.front()->next(event, milliseconds);
 }
 
 /// Asks both transports in turn, so that neither starves the other.
@@ -44,6 +55,7 @@ bool Net::next_of_any(NetEvent& event) {
 }
 
 bool Net::next(NetEvent& event, unsigned milliseconds) {
+  if (!web_ && !enet_) return next_of_nats(event, milliseconds);
   if (!web_) return enet_->next(event, milliseconds);
   if (next_of_any(event)) return true;
   if (milliseconds == 0) return false;
@@ -54,6 +66,10 @@ bool Net::next(NetEvent& event, unsigned milliseconds) {
 }
 
 bool Net::send(Link link, const OutgoingMessage& message) {
+  if (link.nats != nullptr) {
+    link.nats->send(message.head);
+    return true;
+  }
   return link.web != nullptr ? web_->send(link.web, message) : enet_->send(link.enet, message);
 }
 
@@ -66,11 +82,16 @@ void Net::attend() {
 }
 
 void Net::close(Link link) {
+  if (link.nats != nullptr) return link.nats->close();
   if (link.web != nullptr) return web_->close(link.web);
   enet_->close(link.enet);
 }
 
 void Net::abandon(Link link) {
+  if (link.nats != nullptr) {
+    std::erase_if(nats_, [&](const auto& one) { return one.get() == link.nats; });
+    return;
+  }
   if (link.web != nullptr) return web_->abandon(link.web);
   enet_->abandon(link.enet);
 }
@@ -91,15 +112,18 @@ std::string Net::address_of(Link link) {
 }
 
 unsigned Net::round_trip_ms(Link link) {
+  if (link.nats != nullptr) return 0;  // not known
   return link.web != nullptr ? Web::round_trip_ms(link.web) : Enet::round_trip_ms(link.enet);
 }
 
 void Net::set_tag(Link link, std::uintptr_t tag) {
+  if (link.nats != nullptr) return link.nats->set_tag(tag);
   if (link.web != nullptr) return Web::set_tag(link.web, tag);
   Enet::set_tag(link.enet, tag);
 }
 
 std::uintptr_t Net::tag(Link link) {
+  if (link.nats != nullptr) return link.nats->tag();
   return link.web != nullptr ? Web::tag(link.web) : Enet::tag(link.enet);
 }
 

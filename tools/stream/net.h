@@ -1,7 +1,8 @@
-// The network of the programs: links over ENet and WebSockets, and their events.
+// The network of the programs: links over ENet, WebSockets and NATS, and their events.
 #pragma once
 
 #include "enet.h"
+#include "nats_receiver.h"
 #include "transport.h"
 #include "web.h"
 
@@ -57,9 +58,12 @@ class Net {
 
  private:
   [[nodiscard]] bool next_of_any(NetEvent& event);
+  [[nodiscard]] bool next_of_nats(NetEvent& event, unsigned milliseconds);
 
   std::unique_ptr<Enet> enet_;
   std::unique_ptr<Web> web_;
+  std::vector<std::unique_ptr<NatsReceiver>> nats_;
+  NetOptions options_;
   WebListen listen_;
   bool web_first_ = false;
 };

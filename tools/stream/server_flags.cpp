@@ -2,6 +2,7 @@
 
 #include "common/cli.h"
 #include "common/error_flags.h"
+#include "nats_flags.h"
 
 #include <limits>
 
@@ -231,6 +232,49 @@ void add_web_flags(tools::Command& app, ServerFlags& o) {
       ->group(group);
 }
 
+void add_track_flags(tools::Command& app, ServerFlags& o) {
+  const std::string group = "Over NATS";
+  add_nats_flags(app, o.nats.nats,
+                 "Publish the light through these servers of NATS with JetStream, too, for any "
+                 "number of viewers",
+                 group);
+  app.add_option("--nats-replicas", o.nats.streams.replicas,
+                 "Servers that keep what was published, of a cluster")
+      ->allow(tools::in_range(1, 5))
+      ->type_name("N")
+      ->show_default()
+      ->group(group);
+  app.add_option("--nats-max-mb", o.nats_max_mb, "MiB of updates that JetStream keeps")
+      ->allow(tools::in_range(1, 1 << 20))
+      ->type_name("N")
+      ->show_default()
+      ->group(group);
+  app.add_option("--snapshot-seconds", o.service.tracks.snapshot_seconds,
+                 "A region that changed gets a snapshot within so many seconds, or eight times as "
+                 "many where little changes")
+      ->allow(tools::in_range(0.1, 3600.0))
+      ->type_name("S")
+      ->show_default()
+      ->group(group);
+  app.add_option(
+         "--snapshot-share", o.service.tracks.snapshot_share,
+         "Of snapshots in all bytes, at most: more of them, and viewers who come late fetch "
+         "less")
+      ->allow(tools::in_range(0.01, 0.99))
+      ->type_name("X")
+      ->show_default()
+      ->group(group);
+  app.add_flag("--standby", o.standby,
+               "Wait until the publisher is gone, then take over where it was")
+      ->group(group);
+  app.add_option("--standby-after", o.nats.standby_after,
+                 "Seconds without an update after which a publisher counts as gone")
+      ->allow(tools::in_range(0.1, 3600.0))
+      ->type_name("S")
+      ->show_default()
+      ->group(group);
+}
+
 }  // namespace
 
 void add_server_flags(tools::Command& app, ServerFlags& o) {
@@ -252,6 +296,7 @@ void add_server_flags(tools::Command& app, ServerFlags& o) {
   tools::add_token_flags(
       app, o.token, "File whose first line both ends must know; over ENet it is sent in clear");
   add_web_flags(app, o);
+  add_track_flags(app, o);
   add_source_flags(app, o);
   add_update_flags(app, o);
   add_limit_flags(app, o);

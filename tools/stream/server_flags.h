@@ -40,6 +40,9 @@ struct ServerFlags {
   bool web_scene = false;
   std::string metrics_token_file;
   bool insecure_web = false;
+  NatsPublisherOptions nats;
+  std::uint32_t nats_max_mb = 256;
+  bool standby = false;
 };
 
 void add_server_flags(tools::Command& app, ServerFlags& flags);

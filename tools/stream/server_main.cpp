@@ -14,6 +14,7 @@
 #include "feed_fit.h"
 #include "loading.h"
 #include "log.h"
+#include "publishing.h"
 #include "server_flags.h"
 #include "service.h"
 
@@ -321,8 +322,14 @@ Exit run(ServerFlags& o) {
   // Per update an Acknowledge and a Viewpoint, and some more.
   o.server.limits.messages_per_second =
       o.max_messages.value_or(std::max(200.0, 100 + 2 * o.service.rate));
+  auto nats = begin_publishing(o, feed);
+  if (tools::interrupted()) {
+    summarise_nothing(o);
+    return Exit::ok;
+  }
   auto server = tools::take(Server::create(o.server), "backend " + o.backend);
-  Service service(o.service, std::move(server), access, feed, std::move(views), textures);
+  Service service(o.service, std::move(server), access, feed, std::move(views), textures,
+                  std::move(nats));
   service.run();
   return Exit::ok;
 }

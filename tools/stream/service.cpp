@@ -21,19 +21,6 @@ constexpr double kPoll = 1e-3;
 constexpr double kLogBurst = 500, kLogRate = 10;  ///< lines, and lines per second
 constexpr std::uintptr_t kNoConnection = 0;
 
-/// The flags that raise the limit of this reason. `lossy`: a texture loses bits by its backend.
-const char* limits_of(Reason reason, bool lossy) {
-  switch (reason) {
-    case Reason::full:
-      return " (--max-clients)";
-    case Reason::unicast_full:
-      return lossy ? " (lossy textures are for clients with --delivery shared)"
-                   : " (--max-unicast, --max-unicast-per-address)";
-    default:
-      return "";
-  }
-}
-
 }  // namespace
 
 void Service::log_text(const std::string& text) {
@@ -47,7 +34,8 @@ void Service::log_text(const std::string& text) {
 
 Service::Service(const ServiceOptions& options, Server server, std::shared_ptr<Access> access,
                  const Feed& feed, std::unique_ptr<Views> views,
-                 const std::vector<std::vector<StreamedTexture>>& textures)
+                 const std::vector<std::vector<StreamedTexture>>& textures,
+                 std::unique_ptr<NatsPublisher> nats)
     : options_(options),
       server_(std::move(server)),
       access_(std::move(access)),
@@ -60,8 +48,11 @@ Service::Service(const ServiceOptions& options, Server server, std::shared_ptr<A
                                        : std::optional<Control>(std::in_place, options.control)),
       statistics_(options.statistics, feed.volumes),
       log_limit_(kLogBurst, kLogRate),
+      nats_(std::move(nats)),
       tracer_(feed.next),
-      updater_([this](double now) { return server_.update(now, time_); }) {
+      updater_([this](double now) {
+        return tracks_ ? tracks_->update(now, time_) : server_.update(now, time_);
+      }) {
   for (std::size_t v = 0; v < volumes_.size(); ++v) {
     const FeedVolume& volume = volumes_[v];
     const auto id = server_.add_volume(volume.name, volume.desc, volume.geometry, textures[v]);
@@ -70,6 +61,7 @@ Service::Service(const ServiceOptions& options, Server server, std::shared_ptr<A
     const BlockShape block = volume.desc.groups.front().textures.back().desc.block;
     viewed_.push_back({volume.geometry, voxels ? block.y : std::uint8_t{0}});
   }
+  begin_tracks();
   if (views_) {
     viewer_.emplace([this](const ViewRequest& request) { return views_->look(request); });
   }
@@ -123,6 +115,7 @@ void Service::update() {
   updater_.submit(begin);
   const Status status = update_and_listen();
   if (status != Status::ok) log("update {} is not complete: {}", made_ + 1, to_string(status));
+  publish_tracks();
   ++made_;
   const double seconds = now() - begin;
   // In lockstep frames may take any time.
@@ -166,8 +159,7 @@ void Service::open(Link link) {
       net_.send(link, {message});
     }
     ++dropped_[Reason::full];
-    log("{} turned away: {}{}", Net::address_of(link), to_string(Reason::full),
-        limits_of(Reason::full, false));
+    log("{} turned away: {} (--max-clients)", Net::address_of(link), to_string(Reason::full));
     return net_.close(link);
   }
   Net::set_tag(link, *id);
@@ -203,73 +195,6 @@ void Service::handle(NetEvent& event) {
   server_.disconnect(id, now());
   connections_.erase(it);
   take_events();
-}
-
-void Service::take_events() {
-  for (const ServerEvent& event : server_.take_events()) take(event);
-}
-
-void Service::take(const ServerEvent& event) {
-  if (event.type == ServerEvent::Type::expired) {
-    sessions_.erase(event.client);
-    return log("client {} forgotten", event.client);
-  }
-  const auto it = connections_.find(event.connection);
-  if (it == connections_.end()) return;
-  Connection& connection = it->second;
-  switch (event.type) {
-    case ServerEvent::Type::joined:
-    case ServerEvent::Type::resumed: {
-      if (event.type == ServerEvent::Type::joined) sessions_[event.client] = {now(), 0, 0};
-      const auto statistics = server_.statistics(event.connection);
-      const bool unicast = !statistics || statistics->delivery == Delivery::unicast;
-      connection.user = access_->user(event.connection);
-      statistics_.named(event.connection, connection.user);
-      log("{} {} as client {} ({}{}{})", connection.address,
-          event.type == ServerEvent::Type::joined ? "joined" : "came back", event.client,
-          unicast ? "unicast" : "shared", connection.user.empty() ? "" : ", user ",
-          connection.user);
-      if (viewer_ && event.type == ServerEvent::Type::joined) show_nothing(event.connection);
-      break;
-    }
-    case ServerEvent::Type::subscribed:
-      connection.chooses = true;
-      break;
-    case ServerEvent::Type::dropped:
-      ++dropped_[event.reason];
-      if (event.reason == Reason::left) {
-        log("{} left {}", connection.address, account(event.connection, true));
-      } else {
-        const bool lossy = std::ranges::any_of(
-            volumes_, [](const FeedVolume& volume) { return !volume.quantisers.empty(); });
-        log("{} {}: {}{}, {}", connection.address,
-            event.reason == Reason::shutdown ? "let go" : "dropped", to_string(event.reason),
-            limits_of(event.reason, lossy),
-            account(event.connection, event.reason != Reason::replaced));
-      }
-      connection.closing = true;
-      send(event.connection);
-      net_.close(connection.link);
-      break;
-    default:
-      break;
-  }
-}
-
-/// The duration and traffic of a connection's session, for the log. Call it when the connection
-/// ends; `ends`: the session does too.
-std::string Service::account(ConnectionId id, bool ends) {
-  const auto statistics = server_.statistics(id);
-  const auto it = statistics ? sessions_.find(statistics->client) : sessions_.end();
-  if (it == sessions_.end()) return "without a session";
-  Session& session = it->second;
-  session.bytes += statistics->bytes;
-  session.updates += statistics->updates;
-  std::string text = fmt::format("as client {} after {:.1f} s, {:.2f} MB in {}", statistics->client,
-                                 now() - session.began, static_cast<double>(session.bytes) * 1e-6,
-                                 count(session.updates, "update"));
-  if (ends) sessions_.erase(it);
-  return text;
 }
 
 /// Sends a connection's messages; returns their bytes.
@@ -313,6 +238,7 @@ bool Service::may_update() {
 }
 
 bool Service::all_taken() {
+  if (nats_ && nats_->unanswered() > 0) return false;
   for (const ConnectionId id : server_.connections().value_or({})) {
     const auto statistics = server_.statistics(id);
     if (statistics && statistics->in_flight > 0) return false;
@@ -348,6 +274,7 @@ void Service::serve() {
       if (now() >= due + period) break;
     }
     serve_control();
+    attend_tracks();
     take_background();
     const double at = now();
     statistics_.tick(server_, at);

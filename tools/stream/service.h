@@ -5,12 +5,14 @@
 #include "background.h"
 #include "control.h"
 #include "log.h"
+#include "nats_publisher.h"
 #include "net.h"
 #include "play_feed.h"
 #include "server_statistics.h"
 #include "views.h"
 
 #include <gicodec/server.h>
+#include <gicodec/tracks.h>
 
 #include <fmt/core.h>
 
@@ -33,16 +35,18 @@ struct ServiceOptions {
   std::uint32_t wait = 0;     ///< clients to wait for before the first update
   bool lockstep = false;      ///< each update has the next frame and waits for it
   bool quiet = false;
+  TrackOptions tracks;  ///< with a NatsPublisher
   ServerStatistics::Output statistics;
 };
 
 class Service {
  public:
   /// Adds the feed's volumes to the server. `access`: that of the server. Without `views` clients
-  /// see everything, unless they subscribe.
+  /// see everything, unless they subscribe. `nats`: publishes, too; null: nothing does.
   Service(const ServiceOptions& options, Server server, std::shared_ptr<Access> access,
           const Feed& feed, std::unique_ptr<Views> views,
-          const std::vector<std::vector<StreamedTexture>>& textures);
+          const std::vector<std::vector<StreamedTexture>>& textures,
+          std::unique_ptr<NatsPublisher> nats);
 
   /// Returns once all updates are made and acknowledged, or after an interrupt.
   void run();
@@ -81,6 +85,9 @@ class Service {
   void request_frame();
   void request_views();
   void update();
+  void begin_tracks();
+  void publish_tracks();
+  void attend_tracks();
   [[nodiscard]] Status update_and_listen();
   void show_nothing(ConnectionId id);
   void set_visible(ConnectionId id, std::uint16_t volume, std::span<const std::uint8_t> blocks,
@@ -119,6 +126,9 @@ class Service {
   double trace_seconds_ = -1;
   unsigned slow_frames_ = 0;  ///< consecutive ones that took longer than an update
   std::size_t active_ = 0;
+
+  std::unique_ptr<NatsPublisher> nats_;
+  std::optional<TrackPublisher> tracks_;  ///< of server_, if nats_ is there
 
   Background<FeedRequest, FeedFrame> tracer_;
   Background<double, Status> updater_;  ///< uses the server while it works

@@ -66,6 +66,7 @@ void Service::request_frame() {
     if (view) request.viewers.push_back(*view);
     request.all = request.all || !view;
   }
+  request.all = request.all || nats_;
   ++requested_;
   tracer_.submit(request);
 }

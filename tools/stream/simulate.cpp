@@ -104,7 +104,7 @@ class LoadTest {
   }
 
   void handle(Simulated& c, NetEvent& event) {
-    if (event.type == NetEvent::Type::opened) {
+    if (event.type == NetEvent::Type::opened || event.type == NetEvent::Type::renewed) {
       c.open = true;
       const auto hello = c.client.hello();
       if (hello) c.net.send(c.link, {*hello});

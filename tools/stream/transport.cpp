@@ -54,6 +54,7 @@ Address parse_server(const std::string& text, const char* flag) {
 }
 
 std::string to_string(const Address& address) {
+  if (address.via == Via::nats) return address.host;
   const bool bracketed = address.host.find(':') != std::string::npos;
   return fmt::format("{}{}{}{}:{}",
                      address.via == Via::web         ? kSecure

@@ -1,5 +1,5 @@
 // Transports of the programs: addresses, limits, links and their events. ENet (enet.h) and
-// WebSockets (web.h) carry whole messages in order; net.h is both.
+// WebSockets (web.h) carry whole messages in order, NATS (nats_receiver.h) tracks; net.h is all.
 #pragma once
 
 #include <gicodec/protocol.h>
@@ -17,10 +17,11 @@ enum class Via : std::uint8_t {
   enet,
   plain_web,  ///< WebSockets without encryption
   web,        ///< WebSockets over TLS
+  nats,       ///< tracks over NATS; for clients
 };
 
 struct Address {
-  std::string host;  ///< an address, IPv6 without brackets, or a name
+  std::string host;  ///< an address, IPv6 without brackets, or a name; of NATS the URLs
   std::uint16_t port = 0;
   Via via = Via::enet;
 };
@@ -36,13 +37,15 @@ struct Address {
 void write_ports(const std::string& path, const std::vector<std::uint16_t>& ports);
 
 struct WebLink;
+class NatsReceiver;
 
 /// A connection, valid until its `closed` event. At most one pointer is set.
 struct Link {
   _ENetPeer* enet = nullptr;
   WebLink* web = nullptr;
+  NatsReceiver* nats = nullptr;
 
-  explicit operator bool() const { return enet != nullptr || web != nullptr; }
+  explicit operator bool() const { return enet != nullptr || web != nullptr || nats != nullptr; }
   friend bool operator==(const Link&, const Link&) = default;
 };
 
@@ -50,7 +53,8 @@ struct NetEvent {
   enum class Type : std::uint8_t {
     opened,
     received,
-    broken,  ///< the peer broke a rule of the transport; see reason
+    renewed,  ///< another publisher is there: the client should say Hello
+    broken,   ///< the peer broke a rule of the transport; see reason
     closed,
   };
   Type type{};
@@ -75,6 +79,14 @@ struct Trust {
   std::string pin;  ///< SHA-256 of the server's certificate, 32 bytes, instead of an authority
 };
 
+/// Where the servers of NATS are, and what to say to them.
+struct NatsFlags {
+  std::string urls;  ///< "nats://host:port", several with commas between; empty: NATS is not used
+  std::string prefix = "gicodec";
+  std::string user, password_file;
+  std::string ca;  ///< file of authorities; empty: the system's
+};
+
 struct NetOptions {
   std::size_t links = 1;                              ///< at most, 1..4095
   std::size_t links_per_address = 4095;               ///< at most
@@ -84,6 +96,8 @@ struct NetOptions {
   double timeout = 5;       ///< seconds without an answer after which a link counts as lost
   double open_timeout = 5;  ///< seconds in which a link must open
   Trust trust;
+  NatsFlags nats;   ///< to connect to
+  float reach = 0;  ///< see TrackReceiverOptions
 };
 
 /// The address for WebSockets, certificate and metrics.

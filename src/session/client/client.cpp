@@ -114,7 +114,7 @@ Status Client::State::check(const UpdateMessage& update) const {
   const auto known = [&](const auto& item) { return exists(item.stream); };
   const bool all = std::all_of(update.parts.begin(), update.parts.end(), known) &&
                    std::all_of(update.proofs.begin(), update.proofs.end(), known);
-  if (!all || !streams_once(update)) return Status::corrupt;
+  if (!all || !proofs_once(update)) return Status::corrupt;
   return update_work(update, frame) > options.limits.max_work_bytes ? Status::limit_exceeded
                                                                     : Status::ok;
 }
@@ -145,6 +145,9 @@ Status Client::State::take(const UpdateMessage& update) {
       }
       if (status != Status::ok) return ask_again();
     }
+    std::sort(told_presence.begin(), told_presence.end());
+    told_presence.erase(std::unique(told_presence.begin(), told_presence.end()),
+                        told_presence.end());
     for (const auto& [stream, block] : told_presence) {
       if (options.cancel != nullptr && options.cancel->load(std::memory_order_relaxed)) {
         return Status::cancelled;

@@ -12,11 +12,6 @@ std::uint64_t saturated(std::uint64_t a, std::uint64_t b) noexcept {
   return a > UINT64_MAX - b ? UINT64_MAX : a + b;
 }
 
-bool repeated(std::vector<StreamId>& streams) {
-  std::sort(streams.begin(), streams.end());
-  return std::adjacent_find(streams.begin(), streams.end()) != streams.end();
-}
-
 /// Bytes that a client holds, and that its decoders share.
 struct Memory {
   std::uint64_t held = 0, scratch = 0;
@@ -130,14 +125,11 @@ std::uint64_t update_work(const UpdateMessage& update, const ClientFrame& frame)
   return work;
 }
 
-bool streams_once(const UpdateMessage& update) {
-  std::vector<StreamId> first, intra, proven;
-  for (const UpdateMessage::Part& part : update.parts) {
-    const auto info = peek(part.packet);
-    (info.ok() && is_intra(info->type) ? intra : first).push_back(part.stream);
-  }
+bool proofs_once(const UpdateMessage& update) {
+  std::vector<StreamId> proven;
   for (const UpdateMessage::Proof& proof : update.proofs) proven.push_back(proof.stream);
-  return !repeated(first) && !repeated(intra) && !repeated(proven);
+  std::sort(proven.begin(), proven.end());
+  return std::adjacent_find(proven.begin(), proven.end()) == proven.end();
 }
 
 }  // namespace gicodec

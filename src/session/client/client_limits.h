@@ -29,7 +29,7 @@ namespace gicodec {
 /// Precondition: its streams exist in the frame.
 [[nodiscard]] std::uint64_t update_work(const UpdateMessage& update, const ClientFrame& frame);
 
-/// True if no stream has more than one proof and one packet, or a second packet that is intra.
-[[nodiscard]] bool streams_once(const UpdateMessage& update);
+/// True if no stream has more than one proof.
+[[nodiscard]] bool proofs_once(const UpdateMessage& update);
 
 }  // namespace gicodec

@@ -1,0 +1,152 @@
+// Tracks: shared streams for any number of receivers that the publisher does not know, over what
+// carries messages by subject and keeps some of them, such as a message broker. A track is a region
+// of a texture; a snapshot begins a group of its objects, and updates follow (docs/protocol.md,
+// "Tracks"). Neither class knows a transport.
+#pragma once
+
+#include <gicodec/api.h>
+#include <gicodec/kind.h>
+#include <gicodec/packet.h>
+#include <gicodec/protocol.h>
+#include <gicodec/server.h>
+#include <gicodec/status.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace GICODEC_API gicodec {
+
+/// A message to publish. The transport keeps the last one of each type but `update`: of snapshots
+/// the last one of each stream. It keeps updates for kept_seconds().
+struct TrackMessage {
+  enum class Type : std::uint8_t { list, update, snapshot, tick };
+  Type type{};
+  StreamId stream = {};  ///< of updates and snapshots
+  Message bytes = {};
+};
+
+/// What identifies a track to people and in subjects.
+struct TrackName {
+  std::string_view volume, texture;  ///< owned by what returned the name
+  Grid place;                        ///< of its region among those of the texture
+};
+
+struct TrackOptions {
+  static constexpr double kLongest = 8;  ///< intervals, while snapshots would exceed their share
+  /// A track that changed gets its next snapshot within so many seconds, or kLongest times as many.
+  double snapshot_seconds = 10;
+  double snapshot_share = 0.25;  ///< of snapshots in all bytes, over 0 and below 1
+};
+
+/// Seconds for which a transport should keep updates: two of the longest intervals.
+[[nodiscard]] constexpr double kept_seconds(const TrackOptions& options) noexcept {
+  return 2 * TrackOptions::kLongest * options.snapshot_seconds;
+}
+
+struct TrackStatistics {
+  std::uint64_t updates = 0, update_bytes = 0;  ///< objects published
+  std::uint64_t snapshots = 0, snapshot_bytes = 0;
+  std::uint64_t other_bytes = 0;  ///< of lists and ticks
+};
+
+/// Publishes what a Server serves. One thread at a time, that of the server.
+class TrackPublisher {
+ public:
+  /// `server` must outlive the publisher, and not be moved. Its epoch must be above that of every
+  /// publisher before it: receivers ignore lower ones. Errors: invalid_argument (options);
+  /// limit_exceeded (ServerLimits::max_clients, of which a publisher takes two); out_of_memory.
+  [[nodiscard]] static Result<TrackPublisher> create(Server& server,
+                                                     const TrackOptions& options = {});
+  TrackPublisher(TrackPublisher&&) noexcept;
+  TrackPublisher& operator=(TrackPublisher&&) noexcept;
+  ~TrackPublisher();
+
+  /// Server::update(), and the messages of that update. The errors are those of Server::update():
+  /// after out_of_memory some messages are missing, and the next update makes up for them.
+  Status update(double now, double time);
+  /// Of the last update, in the order in which to publish them.
+  [[nodiscard]] std::span<const TrackMessage> messages() const noexcept;
+  /// nullopt for a stream that does not exist. Valid until volumes are added or removed.
+  [[nodiscard]] std::optional<TrackName> name(StreamId stream) const noexcept;
+  /// Where the transport has what it was given so far, in its own count: lists say it to receivers.
+  void set_position(std::uint64_t position) noexcept;
+  /// Makes snapshots of all tracks with the next update: the transport may have lost messages.
+  void repeat_snapshots() noexcept;
+  [[nodiscard]] const TrackStatistics& statistics() const noexcept;
+
+ private:
+  struct GICODEC_LOCAL State;
+  explicit TrackPublisher(std::unique_ptr<State> state) noexcept;
+  std::unique_ptr<State> state_;
+};
+
+struct TrackReceiverOptions {
+  std::vector<const Kind*> kinds = {};  ///< besides the built-in ones; outlive the receiver
+  /// Distance from the viewpoint, in world units, up to which regions of grids are received, the
+  /// nearest first. 0: all of them, or those of the client's Subscribe.
+  float reach = 0;
+  std::uint32_t max_tracks = 1 << 17;  ///< of a list
+  /// Bytes of objects that wait for others. Beyond them the receiver asks for snapshots.
+  std::size_t max_waiting_bytes = std::size_t{256} << 20;
+};
+
+/// What the transport should fetch. Answers go to TrackReceiver::receive(), in any order.
+struct TrackRequests {
+  bool list = false;                     ///< the last list
+  std::vector<StreamId> snapshots = {};  ///< the last snapshots of these, the nearest first
+  std::uint64_t position = 0;            ///< and updates of the same streams from here on; 0: all
+};
+
+struct TrackReceiverStatistics {
+  std::uint64_t objects = 0;   ///< of wanted tracks, received for the first time
+  std::uint64_t repeated = 0;  ///< received again, or of an earlier epoch
+  std::uint64_t damaged = 0;   ///< messages that could not be read
+  std::uint64_t requests = 0;  ///< of snapshots
+};
+
+/// Stands between messages of tracks and a Client of shared delivery, for which it is the server.
+/// One thread at a time. Safe on hostile messages.
+class TrackReceiver {
+ public:
+  /// invalid_argument (options).
+  [[nodiscard]] static Result<TrackReceiver> create(const TrackReceiverOptions& options = {});
+  TrackReceiver(TrackReceiver&&) noexcept;
+  TrackReceiver& operator=(TrackReceiver&&) noexcept;
+  ~TrackReceiver();
+
+  /// Takes a message of the publisher. Missing, repeated, reordered and damaged ones are no errors.
+  /// out_of_memory, and for a list: unknown_kind, limit_exceeded, corrupt; it is then ignored.
+  Status receive(std::span<const std::byte> message);
+  /// Takes a message of the client, see Client::hello() and Client::take_messages(). What a server
+  /// would drop a client for is invalid_argument.
+  Status take(std::span<const std::byte> message);
+  /// Moves out the messages for the client. Call it when no more can be received without waiting:
+  /// all updates that have come make one message. out_of_memory: call it again.
+  [[nodiscard]] Result<std::vector<Message>> take_messages();
+
+  /// The tracks to receive updates of, the nearest first; receive lists and ticks always.
+  [[nodiscard]] std::span<const StreamId> wanted() const noexcept;
+  [[nodiscard]] std::uint64_t wanted_changes() const noexcept;  ///< counts changes of wanted()
+  /// True if there is a publisher of a later epoch, and what is wanted of it has come: the client's
+  /// next Hello begins with it. Until then the client keeps the last state.
+  [[nodiscard]] bool wants_hello() const noexcept;
+  /// Moves out what to fetch. Subscribe to wanted() before.
+  [[nodiscard]] Result<TrackRequests> take_requests();
+  /// True if the client has all wanted tracks as of the last tick.
+  [[nodiscard]] bool complete() const noexcept;
+  /// nullopt for a stream that does not exist. Valid until receive().
+  [[nodiscard]] std::optional<TrackName> name(StreamId stream) const noexcept;
+  [[nodiscard]] const TrackReceiverStatistics& statistics() const noexcept;
+
+ private:
+  struct GICODEC_LOCAL State;
+  explicit TrackReceiver(std::unique_ptr<State> state) noexcept;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace gicodec

@@ -1,0 +1,357 @@
+#include "nats_publisher.h"
+
+#include "clock.h"
+#include "common/program.h"
+#include "dump/error.h"
+#include "dump/text.h"
+#include "log.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <charconv>
+#include <utility>
+
+namespace gicodec::streaming {
+namespace {
+
+using tools::Exit;
+using tools::fail;
+using tools::NatsMessage;
+
+constexpr double kRepeat = 1;      ///< seconds without an answer after which a message is repeated
+constexpr double kGiveUp = 20;     ///< seconds after which the next snapshots make up for it
+constexpr double kAskSeconds = 5;  ///< for one request at the beginning
+constexpr std::size_t kMaxUnanswered = std::size_t{256} << 20;  ///< bytes
+
+Message text_message(const std::string& text) {
+  const auto bytes = std::as_bytes(std::span(text));
+  return {bytes.begin(), bytes.end()};
+}
+
+std::uint64_t number_of(std::string_view text) {
+  std::uint64_t number = 0;
+  std::from_chars(text.data(), text.data() + text.size(), number);
+  return number;
+}
+
+/// The epoch that a claim names.
+std::uint64_t claimed(const NatsMessage& message) {
+  return number_of({reinterpret_cast<const char*>(message.data.data()), message.data.size()});
+}
+
+std::string scroll_text(const std::vector<Scroll>& scrolls) {
+  std::string text;
+  for (const Scroll& scroll : scrolls)
+    text += fmt::format("{}{},{},{}", text.empty() ? "" : " ", scroll[0], scroll[1], scroll[2]);
+  return text;
+}
+
+}  // namespace
+
+NatsPublisher::NatsPublisher(const NatsPublisherOptions& options)
+    : options_(options),
+      subjects_(options.nats.prefix),
+      connection_(open_nats(options.nats, "gi-server", options.timeout)) {
+  answers_ = connection_->subscribe(connection_->inbox() + ".*");
+  claims_ = connection_->subscribe(subjects_.publisher());
+  ticks_ = connection_->subscribe(subjects_.tick());
+  wait_for_servers();
+  make_streams();
+}
+
+void NatsPublisher::wait_for_servers() {
+  const double end = now() + options_.patience;
+  while (!tools::interrupted()) {
+    const tools::NatsState state = connection_->state();
+    if (state.connected) {
+      connections_ = state.connections;
+      return;
+    }
+    if (state.final || now() > end)
+      fail(Exit::io, "--nats {}: {}", options_.nats.urls, nats_failure(state));
+    NatsMessage ignored;
+    static_cast<void>(connection_->next(ignored, 10));
+  }
+}
+
+/// The answer to a request, or nothing in time. Other messages are dropped, claims and ticks of
+/// others taken note of.
+std::optional<NatsMessage> NatsPublisher::answer_to(const NatsMessage& request, double seconds) {
+  NatsMessage sent = request;
+  static_cast<void>(connection_->publish(std::move(sent)));
+  const double end = now() + seconds;
+  NatsMessage message;
+  while (now() < end && !tools::interrupted()) {
+    if (!connection_->next(message, 20)) continue;
+    if (message.subscription == answers_ && message.subject == request.reply) return message;
+  }
+  return std::nullopt;
+}
+
+/// The same, which must come.
+NatsMessage NatsPublisher::ask(const NatsMessage& request, const char* what) {
+  const double end = now() + options_.patience;
+  while (!tools::interrupted()) {
+    auto answer = answer_to(request, kAskSeconds);
+    // A cluster that has no leader yet does not answer, or says that there is nobody to answer.
+    if (answer && answer->status != "503") return *std::move(answer);
+    if (now() > end)
+      fail(Exit::io,
+           "--nats {}: {}: no server with JetStream answers; start nats-server with -js, and give "
+           "this user the right to publish to $JS.API.>",
+           options_.nats.urls, what);
+    NatsMessage ignored;
+    static_cast<void>(connection_->next(ignored, 100));
+  }
+  return {};
+}
+
+void NatsPublisher::make_streams() {
+  const auto make = [this](auto request) {
+    for (const bool exists : {false, true}) {
+      const std::string reply = fmt::format("{}.{}", connection_->inbox(), ++requests_);
+      const NatsMessage message = request(subjects_, options_.streams, exists, reply);
+      const NatsMessage answered = ask(message, "making streams");
+      if (tools::interrupted()) return;
+      const StreamAnswer answer = stream_answer(answered);
+      if (answer.error == 0) return;
+      if (answer.error == kErrorStreamExists && !exists) continue;
+      fail(Exit::io,
+           "--nats {}: JetStream refuses to keep {}: {}; --nats-replicas and "
+           "--nats-max-mb say how much it is asked for",
+           options_.nats.urls, message.subject.substr(message.subject.rfind('.') + 1),
+           tools::printable(answer.text));
+    }
+  };
+  make(make_kept_stream);
+  make(make_update_stream);
+}
+
+/// Takes the next epoch, unless somebody else does. nullopt: somebody did, or the time of the last
+/// update is not known yet.
+std::optional<Turn> NatsPublisher::claim(bool wait) {
+  const double end = now() + options_.patience;
+  while (!tools::interrupted()) {
+    const auto reply = [this] { return fmt::format("{}.{}", connection_->inbox(), ++requests_); };
+    Turn turn;
+    std::uint64_t sequence = 0;
+    const NatsMessage last =
+        ask(get_last(subjects_, subjects_.publisher(), reply()), "asking who publishes");
+    if (last.status.empty() && !last.data.empty()) {
+      turn.epoch = claimed(last) + 1;
+      sequence = last.sequence;
+    }
+    const NatsMessage tick =
+        ask(get_last(subjects_, subjects_.tick(), reply()), "asking for the last update");
+    const auto read = read_message(tick.data);
+    if (const auto* said = read.ok() ? std::get_if<TrackTick>(&*read) : nullptr)
+      turn.time = said->time;
+    NatsMessage request;
+    request.subject = subjects_.publisher();
+    request.reply = reply();
+    request.headers = {{"Nats-Expected-Last-Subject-Sequence", fmt::format("{}", sequence)}};
+    request.data = text_message(fmt::format("{}", turn.epoch));
+    const auto answer = answer_to(request, kAskSeconds);
+    const StreamAnswer stored = answer ? stream_answer(*answer) : StreamAnswer{{}, 0, -1, {}};
+    if (stored.error == 0) {
+      epoch_ = turn.epoch;
+      return turn;
+    }
+    if (!wait) return std::nullopt;
+    if (now() > end)
+      fail(Exit::io, "--nats {}: JetStream does not store who publishes: {}", options_.nats.urls,
+           tools::printable(stored.text));
+  }
+  return std::nullopt;
+}
+
+Turn NatsPublisher::begin() { return claim(true).value_or(Turn{}); }
+
+std::optional<Turn> NatsPublisher::stand_by(
+    const std::function<void(std::optional<double>)>& follow) {
+  follow(std::nullopt);
+  double heard = now();
+  NatsMessage message;
+  std::optional<double> time;  // that is not followed yet
+  while (!tools::interrupted()) {
+    if (connection_->next(message, time ? 0 : 20)) {
+      if (message.subscription != claims_ && message.subscription != ticks_) continue;
+      heard = now();
+      const auto read = read_message(message.data);
+      const auto* const tick = read.ok() ? std::get_if<TrackTick>(&*read) : nullptr;
+      if (tick != nullptr) time = tick->time;
+      continue;
+    }
+    if (time) {
+      follow(std::exchange(time, std::nullopt));
+      continue;
+    }
+    // Without a connection it is this program that is alone.
+    if (!connection_->state().connected) heard = now();
+    if (now() - heard < options_.standby_after) continue;
+    if (const auto turn = claim(false)) return turn;
+    heard = now();
+  }
+  return std::nullopt;
+}
+
+void NatsPublisher::remark(const std::string& text) {
+  if (!remarked_.insert(text).second) return;
+  remarks_ += (remarks_.empty() ? "" : "; ") + text;
+}
+
+std::string NatsPublisher::remarks() { return std::exchange(remarks_, {}); }
+
+void NatsPublisher::publish(TrackPublisher& tracks) {
+  const tools::NatsState state = connection_->state();
+  // What would arrive late is in the next snapshots.
+  if (!state.connected || state.connections != connections_) return;
+  std::string time, scroll;
+  std::uint64_t update = 0;
+  for (const TrackMessage& message : tracks.messages()) {
+    if (message.type != TrackMessage::Type::tick) continue;
+    const auto read = read_message(message.bytes);
+    if (const auto* tick = read.ok() ? std::get_if<TrackTick>(&*read) : nullptr) {
+      time = fmt::format("{}", tick->time);
+      scroll = scroll_text(tick->scrolls);
+      update = tick->update;
+    }
+  }
+  for (const TrackMessage& message : tracks.messages()) {
+    NatsMessage sent;
+    const auto name = tracks.name(message.stream);
+    switch (message.type) {
+      case TrackMessage::Type::list:
+        sent.subject = subjects_.list();
+        break;
+      case TrackMessage::Type::tick:
+        sent.subject = subjects_.tick();
+        break;
+      case TrackMessage::Type::snapshot:
+        if (name) sent.subject = subjects_.snapshot(*name);
+        break;
+      case TrackMessage::Type::update:
+        if (name) sent.subject = subjects_.update(*name);
+    }
+    if (sent.subject.empty()) continue;
+    sent.data = message.bytes;
+    sent.headers = {{"Gi-Epoch", fmt::format("{}", epoch_)},
+                    {"Gi-Update", fmt::format("{}", update)},
+                    {"Gi-Time", time},
+                    {"Gi-Scroll", scroll}};
+    // Headers count, too.
+    constexpr std::size_t kHeaders = 4096;
+    if (state.max_payload > 0 && sent.data.size() + kHeaders > state.max_payload) {
+      remark(
+          fmt::format("{}: {} bytes are more than the servers take, {}; smaller regions by "
+                      "--region make smaller messages, max_payload in their configuration "
+                      "allows larger ones",
+                      tools::printable(sent.subject), sent.data.size(), state.max_payload));
+      continue;
+    }
+    if (message.type != TrackMessage::Type::tick) {
+      const std::uint64_t number = ++requests_;
+      sent.headers.emplace_back("Nats-Msg-Id", fmt::format("{}-{}", epoch_, number));
+      sent.reply = fmt::format("{}.{}", connection_->inbox(), number);
+      // A later message of the subject replaces one that only the last is kept of.
+      if (message.type != TrackMessage::Type::update) {
+        std::erase_if(unanswered_, [&](const Unanswered& one) {
+          const bool same = one.message.subject == sent.subject;
+          if (same) unanswered_bytes_ -= one.message.data.size();
+          return same;
+        });
+      }
+      unanswered_.push_back({number, sent, now(), now()});
+      unanswered_bytes_ += sent.data.size();
+    }
+    if (!connection_->publish(std::move(sent)))
+      remark("the servers take messages more slowly than they come");
+  }
+}
+
+void NatsPublisher::answered(const NatsMessage& message) {
+  const auto dot = message.subject.rfind('.');
+  const std::uint64_t number = number_of(std::string_view(message.subject).substr(dot + 1));
+  const auto found = std::ranges::find(unanswered_, number, &Unanswered::number);
+  if (found == unanswered_.end()) return;
+  const StreamAnswer answer = stream_answer(message);
+  if (answer.error != 0) {
+    // It is repeated.
+    remark(fmt::format("JetStream does not store messages: {}", tools::printable(answer.text)));
+    return;
+  }
+  if (!remarked_.empty() && remarks_.empty()) {
+    remarked_.clear();
+    remarks_ = "JetStream stores messages again";
+  }
+  if (answer.stream == subjects_.update_stream()) stored_ = std::max(stored_, answer.sequence);
+  unanswered_bytes_ -= found->message.data.size();
+  unanswered_.erase(found);
+}
+
+void NatsPublisher::handle(const NatsMessage& message, TrackPublisher& tracks) {
+  if (message.subscription == answers_) {
+    answered(message);
+    tracks.set_position(stored_ + 1);
+  } else if (message.subscription == claims_) {
+    replaced_ = replaced_ || claimed(message) > epoch_;
+  }
+}
+
+/// Repeats what was not answered, and gives up what is too old.
+void NatsPublisher::repeat(TrackPublisher& tracks) {
+  const double at = now();
+  bool lost = false;
+  while (!unanswered_.empty() &&
+         (at - unanswered_.front().first > kGiveUp || unanswered_bytes_ > kMaxUnanswered)) {
+    unanswered_bytes_ -= unanswered_.front().message.data.size();
+    unanswered_.pop_front();
+    lost = true;
+  }
+  if (lost) tracks.repeat_snapshots();
+  for (Unanswered& one : unanswered_) {
+    if (at - one.last < kRepeat) continue;
+    one.last = at;
+    NatsMessage again = one.message;
+    if (!connection_->publish(std::move(again))) break;
+  }
+}
+
+bool NatsPublisher::attend(TrackPublisher& tracks) {
+  NatsMessage message;
+  while (connection_->next(message, 0)) handle(message, tracks);
+  const tools::NatsState state = connection_->state();
+  if (!state.connected) {
+    remark(fmt::format("NATS is not reached: {}", nats_failure(state)));
+    return !replaced_;
+  }
+  if (state.connections != connections_) {
+    // Somebody else may publish by now.
+    const std::string reply = fmt::format("{}.{}", connection_->inbox(), ++requests_);
+    const auto last = answer_to(get_last(subjects_, subjects_.publisher(), reply), kRepeat);
+    if (!last || last->status == "503") return true;  // the next call tries again
+    replaced_ = replaced_ || (last->status.empty() && claimed(*last) > epoch_);
+    if (replaced_) return false;
+    connections_ = state.connections;
+    // Servers that began anew have forgotten all.
+    static_cast<void>(
+        connection_->publish(make_kept_stream(subjects_, options_.streams, false, "")));
+    static_cast<void>(
+        connection_->publish(make_update_stream(subjects_, options_.streams, false, "")));
+    if (last->status == "404") {
+      NatsMessage claim;
+      claim.subject = subjects_.publisher();
+      claim.data = text_message(fmt::format("{}", epoch_));
+      static_cast<void>(connection_->publish(std::move(claim)));
+    }
+    remarked_.clear();
+    remark("NATS is reached again");
+    remarked_.clear();
+    tracks.repeat_snapshots();
+  }
+  repeat(tracks);
+  return !replaced_;
+}
+
+}  // namespace gicodec::streaming

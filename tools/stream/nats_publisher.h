@@ -1,0 +1,85 @@
+// Publishes tracks over NATS, and takes over from a publisher that is gone.
+#pragma once
+
+#include "nats_tracks.h"
+
+#include <gicodec/tracks.h>
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+
+namespace gicodec::streaming {
+
+struct NatsPublisherOptions {
+  NatsFlags nats;
+  StreamSettings streams;
+  double timeout = 2;        ///< seconds for one attempt to connect
+  double patience = 15;      ///< seconds in which the servers must answer at first
+  double standby_after = 1;  ///< seconds without an update after which a standby takes over
+};
+
+/// The epoch of this publisher, and where it goes on.
+struct Turn {
+  std::uint64_t epoch = 1;
+  std::optional<double> time;  ///< the scene's time in the last update of the one before
+};
+
+/// One thread. Throws tools::Error where it cannot begin; later faults are remarks().
+class NatsPublisher {
+ public:
+  explicit NatsPublisher(const NatsPublisherOptions& options);
+
+  /// Becomes the publisher at once; whoever published before ends.
+  [[nodiscard]] Turn begin();
+  /// Waits until no publisher is there any more, and takes its place. `follow` is called with the
+  /// time of each update of the other, nullopt at first. nullopt: the program was interrupted.
+  [[nodiscard]] std::optional<Turn> stand_by(
+      const std::function<void(std::optional<double>)>& follow);
+
+  /// Publishes the messages of an update.
+  void publish(TrackPublisher& tracks);
+  /// Takes answers of the servers, and repeats what they did not store. Call it often. False: there
+  /// is a later publisher, and this one must end.
+  [[nodiscard]] bool attend(TrackPublisher& tracks);
+  /// What the operator should know since the last call; empty: nothing.
+  [[nodiscard]] std::string remarks();
+  [[nodiscard]] std::uint64_t unanswered() const noexcept { return unanswered_.size(); }
+  /// Bytes of a message, at most.
+  [[nodiscard]] std::size_t max_payload() { return connection_->state().max_payload; }
+
+ private:
+  struct Unanswered {
+    std::uint64_t number = 0;
+    tools::NatsMessage message;
+    double first = 0, last = 0;  ///< when it was published
+  };
+  [[nodiscard]] tools::NatsMessage ask(const tools::NatsMessage& request, const char* what);
+  [[nodiscard]] std::optional<tools::NatsMessage> answer_to(const tools::NatsMessage& request,
+                                                            double seconds);
+  void wait_for_servers();
+  void make_streams();
+  [[nodiscard]] std::optional<Turn> claim(bool wait);
+  void handle(const tools::NatsMessage& message, TrackPublisher& tracks);
+  void answered(const tools::NatsMessage& message);
+  void repeat(TrackPublisher& tracks);
+  void remark(const std::string& text);
+
+  NatsPublisherOptions options_;
+  TrackSubjects subjects_;
+  std::unique_ptr<tools::NatsConnection> connection_;
+  std::uint64_t answers_ = 0, claims_ = 0, ticks_ = 0;  ///< subscriptions
+  std::uint64_t requests_ = 0;                          ///< made so far
+  std::uint64_t epoch_ = 0, connections_ = 0, stored_ = 0;
+  std::deque<Unanswered> unanswered_;
+  std::size_t unanswered_bytes_ = 0;
+  bool replaced_ = false;
+  std::set<std::string> remarked_;  ///< faults that are not over
+  std::string remarks_;
+};
+
+}  // namespace gicodec::streaming

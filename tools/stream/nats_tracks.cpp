@@ -1,0 +1,248 @@
+#include "nats_tracks.h"
+
+#include "common/token.h"
+#include "dump/error.h"
+#include "dump/text.h"
+#include "dump/url.h"
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <charconv>
+#include <utility>
+
+namespace gicodec::streaming {
+namespace {
+
+using nlohmann::json;
+using tools::Exit;
+using tools::fail;
+using tools::NatsMessage;
+
+constexpr double kNanoseconds = 1e9;
+constexpr std::size_t kMaxPrefix = 64;
+
+bool is_plain(char c) {
+  return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-' ||
+         c == '_';
+}
+
+NatsMessage request(std::string subject, const std::string& reply, const json& body) {
+  NatsMessage message;
+  message.subject = std::move(subject);
+  message.reply = reply;
+  if (body.is_null()) return message;
+  const std::string text = body.dump();
+  const auto bytes = std::as_bytes(std::span(text));
+  message.data.assign(bytes.begin(), bytes.end());
+  return message;
+}
+
+/// What an answer says; null if it is no JSON.
+json parsed(const NatsMessage& message) {
+  const auto* const text = reinterpret_cast<const char*>(message.data.data());
+  return json::parse(text, text + message.data.size(), nullptr, false);
+}
+
+NatsMessage make_stream(const std::string& name, const std::vector<std::string>& subjects,
+                        const StreamSettings& settings, json more, bool exists,
+                        const std::string& reply) {
+  json config{
+      {"name", name},          {"subjects", subjects},
+      {"retention", "limits"}, {"discard", "old"},
+      {"storage", "memory"},   {"num_replicas", settings.replicas},
+      {"allow_direct", true},  {"duplicate_window", static_cast<std::int64_t>(30 * kNanoseconds)}};
+  config.update(more);
+  return request(fmt::format("$JS.API.STREAM.{}.{}", exists ? "UPDATE" : "CREATE", name), reply,
+                 config);
+}
+
+}  // namespace
+
+std::vector<std::string> nats_urls(const std::string& urls, const char* flag) {
+  std::vector<std::string> all;
+  for (std::size_t first = 0; first <= urls.size();) {
+    const std::size_t end = std::min(urls.find(',', first), urls.size());
+    std::string url = urls.substr(first, end - first);
+    const bool known = url.starts_with("nats://") || url.starts_with("tls://");
+    if (!known || url.size() <= url.find("//") + 2)
+      fail(Exit::usage,
+           "{}: expected nats://HOST:PORT or tls://HOST:PORT, several with commas "
+           "between, not \"{}\"",
+           flag, tools::shown_url(url));
+    if (url.find('@') != std::string::npos)
+      fail(Exit::usage,
+           "{}: {}: other users of this machine could read a password there; use "
+           "--nats-user and --nats-password-file",
+           flag, tools::shown_url(url));
+    all.push_back(std::move(url));
+    first = end + 1;
+  }
+  return all;
+}
+
+std::unique_ptr<tools::NatsConnection> open_nats(const NatsFlags& flags, const char* program,
+                                                 double timeout) {
+  tools::NatsOptions options;
+  options.urls = nats_urls(flags.urls, "--nats");
+  options.name = program;
+  options.user = flags.user;
+  options.ca = flags.ca;
+  options.timeout = timeout;
+  if (flags.user.empty() != flags.password_file.empty())
+    fail(Exit::usage, "--nats-user and --nats-password-file belong together; name both");
+  if (!flags.password_file.empty()) {
+    options.password = tools::read_token({"", flags.password_file}).text;
+    for (const std::string& url : options.urls) {
+      if (url.starts_with("nats://") && flags.ca.empty() &&
+          !tools::is_loopback(tools::host_of(url)))
+        fail(Exit::usage, "{}: the password would go there in clear; use tls://", url);
+    }
+  }
+  auto connection = tools::nats_module().open(options);
+  if (connection == nullptr) fail(Exit::internal, "memory ran out");
+  return connection;
+}
+
+std::string nats_failure(const tools::NatsState& state) {
+  const std::string text = state.failure.empty() ? "no answer" : tools::printable(state.failure);
+  const bool tls = state.failure.find("SSL") != std::string::npos ||
+                   state.failure.find("certificate") != std::string::npos;
+  const bool rights = state.failure.find("uthoriz") != std::string::npos ||
+                      state.failure.find("ermissions") != std::string::npos;
+  return fmt::format("{}{}", text,
+                     tls      ? "; --nats-ca names the authority of its certificate"
+                     : rights ? "; --nats-user and --nats-password-file name a user that may"
+                              : "");
+}
+
+std::string subject_token(std::string_view name) {
+  std::string token;
+  for (const char c : name) {
+    if (is_plain(c)) {
+      token += c;
+    } else {
+      token += fmt::format("%{:02X}", static_cast<unsigned char>(c));
+    }
+  }
+  return token.empty() ? "%" : token;
+}
+
+TrackSubjects::TrackSubjects(const std::string& prefix) : prefix_(prefix) {
+  const bool good = !prefix.empty() && prefix.size() <= kMaxPrefix && prefix.front() != '.' &&
+                    prefix.back() != '.' && prefix.find("..") == std::string::npos &&
+                    std::ranges::all_of(prefix, [](char c) { return is_plain(c) || c == '.'; });
+  if (!good)
+    fail(Exit::usage,
+         "--nats-prefix: expected letters, digits, '-' and '_', with single dots "
+         "between, at most {} characters, not \"{}\"",
+         kMaxPrefix, tools::printable(prefix));
+  std::string name = prefix;
+  std::ranges::replace(name, '.', '_');
+  kept_ = name + "-last";
+  updates_ = name + "-updates";
+}
+
+std::string TrackSubjects::update(const TrackName& track) const {
+  return fmt::format("{}.{}.{}.{}.{}.{}", prefix_, subject_token(track.volume),
+                     subject_token(track.texture), track.place.x, track.place.y, track.place.z);
+}
+
+std::string TrackSubjects::updates(std::span<const TrackName> tracks) const {
+  const TrackName& first = tracks.front();
+  const auto token = [&](auto of, const auto& text) {
+    const bool same =
+        std::ranges::all_of(tracks, [&](const TrackName& track) { return of(track) == of(first); });
+    return same ? fmt::format("{}", text(of(first))) : std::string("*");
+  };
+  const auto name = [](std::string_view text) { return subject_token(text); };
+  const auto number = [](std::uint32_t value) { return value; };
+  return fmt::format("{}.{}.{}.{}.{}.{}", prefix_,
+                     token([](const TrackName& track) { return track.volume; }, name),
+                     token([](const TrackName& track) { return track.texture; }, name),
+                     token([](const TrackName& track) { return track.place.x; }, number),
+                     token([](const TrackName& track) { return track.place.y; }, number),
+                     token([](const TrackName& track) { return track.place.z; }, number));
+}
+
+std::vector<std::string> TrackSubjects::kept_subjects() const {
+  return {prefix_ + ".*.*.*.*.*" + kLast, list(), tick(), publisher()};
+}
+
+std::vector<std::string> TrackSubjects::update_subjects() const { return {prefix_ + ".*.*.*.*.*"}; }
+
+NatsMessage make_kept_stream(const TrackSubjects& subjects, const StreamSettings& settings,
+                             bool exists, const std::string& reply) {
+  return make_stream(subjects.kept_stream(), subjects.kept_subjects(), settings,
+                     {{"max_msgs_per_subject", 1}}, exists, reply);
+}
+
+NatsMessage make_update_stream(const TrackSubjects& subjects, const StreamSettings& settings,
+                               bool exists, const std::string& reply) {
+  return make_stream(subjects.update_stream(), subjects.update_subjects(), settings,
+                     {{"max_age", static_cast<std::int64_t>(settings.keep_seconds * kNanoseconds)},
+                      {"max_bytes", settings.keep_bytes}},
+                     exists, reply);
+}
+
+NatsMessage get_last(const TrackSubjects& subjects, const std::string& subject,
+                     const std::string& reply) {
+  return request(fmt::format("$JS.API.DIRECT.GET.{}.{}", subjects.kept_stream(), subject), reply,
+                 nullptr);
+}
+
+NatsMessage get_updates(const TrackSubjects& subjects, const std::string& subject,
+                        std::uint64_t first, const std::string& deliver, const std::string& reply) {
+  json config{{"deliver_subject", deliver},
+              {"filter_subject", subject},
+              {"ack_policy", "none"},
+              {"max_deliver", 1},
+              {"mem_storage", true},
+              {"num_replicas", 1},
+              {"inactive_threshold", static_cast<std::int64_t>(5 * kNanoseconds)}};
+  if (first == 0) {
+    config["deliver_policy"] = "all";
+  } else {
+    config["deliver_policy"] = "by_start_sequence";
+    config["opt_start_seq"] = first;
+  }
+  return request("$JS.API.CONSUMER.CREATE." + subjects.update_stream(), reply,
+                 {{"stream_name", subjects.update_stream()}, {"config", config}});
+}
+
+StreamAnswer stream_answer(const NatsMessage& message) {
+  StreamAnswer answer;
+  const json said = parsed(message);
+  if (!message.status.empty() || !said.is_object()) {
+    answer.error = -1;
+    answer.text = message.status == "503" ? "no server with JetStream answers" : message.status;
+    return answer;
+  }
+  if (const auto error = said.find("error"); error != said.end() && error->is_object()) {
+    answer.error = -1;
+    if (const auto code = error->find("err_code"); code != error->end() && code->is_number())
+      answer.error = code->get<int>();
+    if (const auto text = error->find("description"); text != error->end() && text->is_string())
+      answer.text = text->get<std::string>();
+    return answer;
+  }
+  if (const auto stream = said.find("stream"); stream != said.end() && stream->is_string())
+    answer.stream = stream->get<std::string>();
+  if (const auto sequence = said.find("seq"); sequence != said.end() && sequence->is_number())
+    answer.sequence = sequence->get<std::uint64_t>();
+  return answer;
+}
+
+std::optional<std::uint64_t> pending_behind(const NatsMessage& message) {
+  // "$JS.ACK.stream.consumer.deliveries.sequence.of consumer.time.pending"
+  const auto dot = message.reply.rfind('.');
+  if (!message.reply.starts_with("$JS.ACK.") || dot == std::string::npos) return std::nullopt;
+  std::uint64_t pending = 0;
+  const char* const end = message.reply.data() + message.reply.size();
+  const auto [last, error] = std::from_chars(message.reply.data() + dot + 1, end, pending);
+  if (error != std::errc() || last != end) return std::nullopt;
+  return pending;
+}
+
+}  // namespace gicodec::streaming

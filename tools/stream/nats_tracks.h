@@ -1,0 +1,93 @@
+// Tracks on NATS with JetStream: names of subjects and streams, and requests to servers
+// (docs/streaming.md, "Many viewers").
+#pragma once
+
+#include "modules/nats.h"
+#include "transport.h"
+
+#include <gicodec/tracks.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace gicodec::streaming {
+
+/// The URLs, one by one. Throws tools::Error of Exit::usage, which names `flag`, for one that is no
+/// URL of NATS, or has a password in it.
+[[nodiscard]] std::vector<std::string> nats_urls(const std::string& urls, const char* flag);
+/// Begins to connect. Throws tools::Error of Exit::usage or io.
+[[nodiscard]] std::unique_ptr<tools::NatsConnection> open_nats(const NatsFlags& flags,
+                                                               const char* program, double timeout);
+/// What a failure to connect means to the user, and the cure. Escaped.
+[[nodiscard]] std::string nats_failure(const tools::NatsState& state);
+
+/// A name as one token of a subject: bytes other than letters, digits, '-' and '_' become %XX.
+[[nodiscard]] std::string subject_token(std::string_view name);
+
+class TrackSubjects {
+ public:
+  /// Throws tools::Error of Exit::usage for a prefix that makes no subject.
+  explicit TrackSubjects(const std::string& prefix);
+
+  [[nodiscard]] std::string update(const TrackName& track) const;
+  [[nodiscard]] std::string snapshot(const TrackName& track) const { return update(track) + kLast; }
+  [[nodiscard]] std::string list() const { return prefix_ + ".list"; }
+  [[nodiscard]] std::string tick() const { return prefix_ + ".tick"; }
+  /// Its last message says which publisher there is.
+  [[nodiscard]] std::string publisher() const { return prefix_ + ".publisher"; }
+  /// The narrowest subject with wildcards that has the updates of all these tracks.
+  [[nodiscard]] std::string updates(std::span<const TrackName> tracks) const;
+
+  /// The stream of the last message of each subject, and that of updates.
+  [[nodiscard]] const std::string& kept_stream() const noexcept { return kept_; }
+  [[nodiscard]] const std::string& update_stream() const noexcept { return updates_; }
+  [[nodiscard]] std::vector<std::string> kept_subjects() const;
+  [[nodiscard]] std::vector<std::string> update_subjects() const;
+
+ private:
+  static constexpr const char* kLast = ".snapshot";
+  std::string prefix_, kept_, updates_;
+};
+
+struct StreamSettings {
+  std::uint32_t replicas = 1;
+  double keep_seconds = 160;                            ///< of updates
+  std::uint64_t keep_bytes = std::uint64_t{256} << 20;  ///< of updates
+};
+
+// Requests: `reply` is where the answer goes.
+
+/// Creates a stream, or changes it to these settings.
+[[nodiscard]] tools::NatsMessage make_kept_stream(const TrackSubjects& subjects,
+                                                  const StreamSettings& settings, bool exists,
+                                                  const std::string& reply);
+[[nodiscard]] tools::NatsMessage make_update_stream(const TrackSubjects& subjects,
+                                                    const StreamSettings& settings, bool exists,
+                                                    const std::string& reply);
+/// The last message of a subject, from any server that holds it, which may be behind.
+[[nodiscard]] tools::NatsMessage get_last(const TrackSubjects& subjects, const std::string& subject,
+                                          const std::string& reply);
+/// The updates of a subject from a sequence on, to `deliver`.
+[[nodiscard]] tools::NatsMessage get_updates(const TrackSubjects& subjects,
+                                             const std::string& subject, std::uint64_t first,
+                                             const std::string& deliver, const std::string& reply);
+
+/// What JetStream answers to a message that it stores, or to make_…_stream().
+struct StreamAnswer {
+  std::string stream;
+  std::uint64_t sequence = 0;
+  int error = 0;          ///< JetStream's number; 0: it is stored or done
+  std::string text = {};  ///< of the error; not escaped
+};
+inline constexpr int kErrorStreamExists = 10058;
+inline constexpr int kErrorWrongSequence = 10071;
+[[nodiscard]] StreamAnswer stream_answer(const tools::NatsMessage& message);
+/// How many messages wait behind this one, which a get_updates() brought.
+[[nodiscard]] std::optional<std::uint64_t> pending_behind(const tools::NatsMessage& message);
+
+}  // namespace gicodec::streaming
