@@ -185,28 +185,29 @@ struct UpdateMessage {
 
 // Tracks: shared streams for receivers that the publisher does not know, see tracks.h.
 
-/// Consecutive regions of a texture, and the update in which each last changed.
+/// The last objects of the tracks of consecutive regions of a texture.
 struct TrackRun {
-  StreamId first = {};      ///< of shared delivery
-  std::uint32_t count = 1;  ///< of regions, from the first one on
-  std::uint64_t age = 0;    ///< updates from the change to that of the message, and no fewer
+  StreamId first = {};       ///< of shared delivery
+  std::uint32_t count = 1;   ///< of regions, from the first one on
+  std::uint64_t age = 0;     ///< updates from the object to that of the message
+  std::uint32_t number = 0;  ///< TrackObject::number
 };
 
 /// What a receiver begins with: the volumes, and the last snapshot of each track.
 struct TrackList {
   std::uint64_t epoch = 0, update = 0;
-  std::uint64_t round = 0;     ///< the snapshots have all changes up to this update
-  std::uint64_t position = 0;  ///< of later objects, in the transport's count; 0: not known
+  std::uint64_t round = 0;  ///< the snapshots have all changes up to this update
   SceneId scene = {};
   std::uint32_t generation = 0;
   std::vector<DescribedVolume> volumes = {};
-  std::vector<TrackRun> snapshots = {};  ///< their ages
+  std::vector<TrackRun> snapshots = {};  ///< of number 0
 };
 
 /// A track's part of one update, or a snapshot of it.
 struct TrackObject {
   std::uint64_t epoch = 0, update = 0;
   std::uint64_t previous = 0;  ///< update of the object on which this one builds; 0: a snapshot
+  std::uint32_t number = 0;    ///< of objects after the last snapshot; 0: a snapshot
   std::uint32_t generation = 0;
   StreamId stream = {};
   std::vector<std::span<const std::byte>> packets = {};  ///< into the bytes of read_message()

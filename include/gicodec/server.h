@@ -66,7 +66,8 @@ struct ServerLimits {
   std::uint64_t max_total_bytes_per_second = 0;
 };
 
-struct ServerTimeouts {  // seconds
+/// Seconds.
+struct ServerTimeouts {
   double hello = 5;    ///< from connection to Hello
   double stall = 20;   ///< without an acknowledgement while updates are in flight
   double linger = 30;  ///< for which a session outlives its connection
@@ -181,7 +182,6 @@ class Server {
                     std::uint8_t group = 0);
 
   // Connections.
-
   /// Call this for each new connection of a transport. `origin` identifies the peer, e.g. by its
   /// address; empty: unknown. On limit_exceeded, out_of_memory or invalid_time close the
   /// connection.

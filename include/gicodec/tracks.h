@@ -21,12 +21,13 @@
 
 namespace GICODEC_API gicodec {
 
-/// A message to publish. The transport keeps the last one of each type but `update`: of snapshots
-/// the last one of each stream. It keeps updates for kept_seconds().
+/// A message to publish. The transport keeps the last list and the last tick, and of each track the
+/// last object of each number: snapshots until the next, others for kept_seconds().
 struct TrackMessage {
-  enum class Type : std::uint8_t { list, update, snapshot, tick };
+  enum class Type : std::uint8_t { list, object, tick };
   Type type{};
-  StreamId stream = {};  ///< of updates and snapshots
+  StreamId stream = {};      ///< of objects
+  std::uint32_t number = 0;  ///< TrackObject::number
   Message bytes = {};
 };
 
@@ -73,8 +74,6 @@ class TrackPublisher {
   [[nodiscard]] std::span<const TrackMessage> messages() const noexcept;
   /// nullopt for a stream that does not exist. Valid until volumes are added or removed.
   [[nodiscard]] std::optional<TrackName> name(StreamId stream) const noexcept;
-  /// Where the transport has what it was given so far, in its own count: lists say it to receivers.
-  void set_position(std::uint64_t position) noexcept;
   /// Makes snapshots of all tracks with the next update: the transport may have lost messages.
   void repeat_snapshots() noexcept;
   [[nodiscard]] const TrackStatistics& statistics() const noexcept;
@@ -97,16 +96,19 @@ struct TrackReceiverOptions {
 
 /// What the transport should fetch. Answers go to TrackReceiver::receive(), in any order.
 struct TrackRequests {
-  bool list = false;                     ///< the last list
-  std::vector<StreamId> snapshots = {};  ///< the last snapshots of these, the nearest first
-  std::uint64_t position = 0;            ///< and updates of the same streams from here on; 0: all
+  struct Object {
+    StreamId stream;
+    std::uint32_t number;
+  };
+  bool list = false;                 ///< the last list, and the last tick
+  std::vector<Object> objects = {};  ///< those of the nearest tracks first
 };
 
 struct TrackReceiverStatistics {
   std::uint64_t objects = 0;   ///< of wanted tracks, received for the first time
   std::uint64_t repeated = 0;  ///< received again, or of an earlier epoch
   std::uint64_t damaged = 0;   ///< messages that could not be read
-  std::uint64_t requests = 0;  ///< of snapshots
+  std::uint64_t requests = 0;  ///< of objects
 };
 
 /// Stands between messages of tracks and a Client of shared delivery, for which it is the server.

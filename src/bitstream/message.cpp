@@ -261,10 +261,11 @@ void update_rest(Archive& archive, auto& m) {
 /// Runs of tracks, ascending and apart, none older than `update`.
 template <typename Archive>
 void track_runs(Archive& archive, auto& runs, std::uint64_t update) {
-  items(archive, runs, kMaxBytes, 5, [&](auto& run) {
+  items(archive, runs, kMaxBytes, 6, [&](auto& run) {
     stream_id(archive, run.first);
     archive.number(run.count);
     archive.number(run.age);
+    archive.number(run.number);
     archive.check(run.count > 0 && run.age <= update &&
                   run.first.region <= StreamId::kWholeVolume - run.count);
   });
@@ -282,7 +283,6 @@ void fields(Archive& archive, M& m) {
   archive.number(m.update);
   archive.number(m.round);
   archive.check(m.round <= m.update);
-  archive.number(m.position);
   archive.text(m.scene.name, kMaxName);
   archive.fixed(m.scene.geometry);
   volumes(archive, m);
@@ -296,6 +296,7 @@ void fields(Archive& archive, M& m) {
   archive.number(m.update);
   archive.number(m.previous);
   archive.check(m.previous < m.update);
+  archive.number(m.number);
   stream_id(archive, m.stream);
   archive.check(m.stream.region != StreamId::kWholeVolume);
   items(archive, m.packets, kMaxTrackPackets, 1, [&](auto& packet) { archive.bytes(packet); });

@@ -93,7 +93,7 @@ std::vector<TrackRun> random_runs(Random& random) {
   std::uint32_t region = 0;
   for (TrackRun& run : runs) {
     region += pick(random, 0, 50);
-    run = {{3, 1, region}, pick(random, 1, 40), pick(random, 0, 900)};
+    run = {{3, 1, region}, pick(random, 1, 40), pick(random, 0, 900), pick(random, 0, 300)};
     region += run.count;
   }
   return runs;
@@ -138,20 +138,16 @@ AnyMessage random_message(Random& random, const Bytes& packet) {
       return TrackList{random(),
                        900,
                        pick(random, 0, 900),
-                       random(),
                        {random_text(random, kMaxName), random()},
                        kEdition,
                        random_volumes(random),
                        random_runs(random)};
     case 9: {
       const std::uint64_t update = pick(random, 1, 900);
-      TrackObject object{random(),
-                         update,
-                         pick(random, 0, static_cast<std::uint32_t>(update - 1)),
-                         number(),
-                         random_stream(random),
-                         {},
-                         {}};
+      TrackObject object{
+          random(), update,   pick(random, 0, static_cast<std::uint32_t>(update - 1)),
+          number(), number(), random_stream(random),
+          {},       {}};
       if (object.stream.region == StreamId::kWholeVolume) object.stream.region = 0;
       for (std::uint32_t i = 0, packets = pick(random, 1, 2); i < packets; ++i)
         object.packets.push_back(std::span<const std::byte>(packet).first(packet.size() / (i + 1)));

@@ -25,8 +25,7 @@ constexpr double kUpdateStep = 0.1;  ///< seconds between updates
 /// What a broker keeps.
 struct Kept {
   Message list, tick;
-  std::map<StreamId, Message> snapshots;
-  std::vector<std::pair<StreamId, Message>> updates;  ///< the first at position 1
+  std::map<std::pair<StreamId, std::uint32_t>, Message> objects;  ///< by stream and number
 
   void publish(const TrackMessage& message) {
     switch (message.type) {
@@ -36,11 +35,8 @@ struct Kept {
       case TrackMessage::Type::tick:
         tick = message.bytes;
         break;
-      case TrackMessage::Type::snapshot:
-        snapshots[message.stream] = message.bytes;
-        break;
-      case TrackMessage::Type::update:
-        updates.emplace_back(message.stream, message.bytes);
+      case TrackMessage::Type::object:
+        objects[{message.stream, message.number}] = message.bytes;
     }
   }
 };
@@ -95,19 +91,17 @@ class TrackWorld {
       if (chance(random_, 25)) begin_publishing();  // another epoch
       change();
     }
-    publisher_->set_position(kept_.updates.size() + 1);
     const double now = static_cast<double>(step_) * kUpdateStep;
     ASSERT_EQ(publisher_->update(now, now), Status::ok);
     remember();
     for (const TrackMessage& message : publisher_->messages()) {
       kept_.publish(message);
       for (const auto& one : audience_) {
-        const bool always =
-            message.type == TrackMessage::Type::list || message.type == TrackMessage::Type::tick;
+        const bool is_object = message.type == TrackMessage::Type::object;
         const auto wanted = one->receiver->wanted();
-        const bool subscribed = message.type == TrackMessage::Type::update &&
-                                std::ranges::find(wanted, message.stream) != wanted.end();
-        if (always || subscribed) send(*one, message.bytes);
+        const bool subscribed =
+            message.number != 0 && std::ranges::find(wanted, message.stream) != wanted.end();
+        if (!is_object || subscribed) send(*one, message.bytes);
       }
     }
     history_.push_back(kept_);
@@ -282,16 +276,10 @@ class TrackWorld {
     ASSERT_TRUE(requests.ok());
     const Kept& from = trouble_.broker_lags ? history_.front() : kept_;
     if (requests->list && !from.list.empty()) send(one, from.list);
-    for (const StreamId stream : requests->snapshots) {
-      const auto found = from.snapshots.find(stream);
-      if (found != from.snapshots.end()) send(one, found->second);
-    }
-    if (requests->snapshots.empty()) return;
-    for (std::size_t i = std::max<std::size_t>(requests->position, 1) - 1; i < from.updates.size();
-         ++i) {
-      const auto& [stream, message] = from.updates[i];
-      if (std::ranges::find(requests->snapshots, stream) != requests->snapshots.end())
-        send(one, message);
+    if (requests->list && !from.tick.empty()) send(one, from.tick);
+    for (const auto& [stream, number] : requests->objects) {
+      const auto found = from.objects.find({stream, number});
+      if (found != from.objects.end()) send(one, found->second);
     }
   }
 

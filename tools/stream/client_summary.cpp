@@ -79,6 +79,8 @@ void summarise(const ViewerResult& r, const Recorded& recorded, bool json) {
     const ordered_json summary{{"updates", r.updates},
                                {"seconds", rounded(r.seconds)},
                                {"all_seconds", rounded(r.all_seconds)},
+                               {"first_ms", rounded(r.first_seconds * 1e3)},
+                               {"longest_pause_ms", rounded(r.longest_pause * 1e3)},
                                {"mbps", rounded(mbps(r.statistics.bytes, r.seconds))},
                                {"bytes", r.statistics.bytes},
                                {"packets", r.statistics.packets},
@@ -112,7 +114,8 @@ void summarise(const ViewerResult& r, const Recorded& recorded, bool json) {
                  r.statistics.failed_proofs);
   }
   print_recorded(recorded);
-  tools::print("; {:.1f} s in all\n", r.all_seconds);
+  tools::print("; {:.1f} s in all, {:.2f} s to the first update, longest pause {:.2f} s\n",
+               r.all_seconds, r.first_seconds, r.longest_pause);
   for (const std::string& texture : r.lossy) tools::print("LOSSY: {}\n", texture);
 }
 

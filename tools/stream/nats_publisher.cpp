@@ -136,14 +136,14 @@ std::optional<Turn> NatsPublisher::claim(bool wait) {
     const auto reply = [this] { return fmt::format("{}.{}", connection_->inbox(), ++requests_); };
     Turn turn;
     std::uint64_t sequence = 0;
-    const NatsMessage last =
-        ask(get_last(subjects_, subjects_.publisher(), reply()), "asking who publishes");
+    const NatsMessage last = ask(get_last(subjects_.kept_stream(), subjects_.publisher(), reply()),
+                                 "asking who publishes");
     if (last.status.empty() && !last.data.empty()) {
       turn.epoch = claimed(last) + 1;
       sequence = last.sequence;
     }
-    const NatsMessage tick =
-        ask(get_last(subjects_, subjects_.tick(), reply()), "asking for the last update");
+    const NatsMessage tick = ask(get_last(subjects_.kept_stream(), subjects_.tick(), reply()),
+                                 "asking for the last update");
     const auto read = read_message(tick.data);
     if (const auto* said = read.ok() ? std::get_if<TrackTick>(&*read) : nullptr)
       turn.time = said->time;
@@ -228,11 +228,8 @@ void NatsPublisher::publish(TrackPublisher& tracks) {
       case TrackMessage::Type::tick:
         sent.subject = subjects_.tick();
         break;
-      case TrackMessage::Type::snapshot:
-        if (name) sent.subject = subjects_.snapshot(*name);
-        break;
-      case TrackMessage::Type::update:
-        if (name) sent.subject = subjects_.update(*name);
+      case TrackMessage::Type::object:
+        if (name) sent.subject = subjects_.object(*name, message.number);
     }
     if (sent.subject.empty()) continue;
     sent.data = message.bytes;
@@ -254,14 +251,12 @@ void NatsPublisher::publish(TrackPublisher& tracks) {
       const std::uint64_t number = ++requests_;
       sent.headers.emplace_back("Nats-Msg-Id", fmt::format("{}-{}", epoch_, number));
       sent.reply = fmt::format("{}.{}", connection_->inbox(), number);
-      // A later message of the subject replaces one that only the last is kept of.
-      if (message.type != TrackMessage::Type::update) {
-        std::erase_if(unanswered_, [&](const Unanswered& one) {
-          const bool same = one.message.subject == sent.subject;
-          if (same) unanswered_bytes_ -= one.message.data.size();
-          return same;
-        });
-      }
+      // Of each subject only the last message is kept.
+      std::erase_if(unanswered_, [&](const Unanswered& one) {
+        const bool same = one.message.subject == sent.subject;
+        if (same) unanswered_bytes_ -= one.message.data.size();
+        return same;
+      });
       unanswered_.push_back({number, sent, now(), now()});
       unanswered_bytes_ += sent.data.size();
     }
@@ -285,15 +280,13 @@ void NatsPublisher::answered(const NatsMessage& message) {
     remarked_.clear();
     remarks_ = "JetStream stores messages again";
   }
-  if (answer.stream == subjects_.update_stream()) stored_ = std::max(stored_, answer.sequence);
   unanswered_bytes_ -= found->message.data.size();
   unanswered_.erase(found);
 }
 
-void NatsPublisher::handle(const NatsMessage& message, TrackPublisher& tracks) {
+void NatsPublisher::handle(const NatsMessage& message) {
   if (message.subscription == answers_) {
     answered(message);
-    tracks.set_position(stored_ + 1);
   } else if (message.subscription == claims_) {
     replaced_ = replaced_ || claimed(message) > epoch_;
   }
@@ -320,7 +313,7 @@ void NatsPublisher::repeat(TrackPublisher& tracks) {
 
 bool NatsPublisher::attend(TrackPublisher& tracks) {
   NatsMessage message;
-  while (connection_->next(message, 0)) handle(message, tracks);
+  while (connection_->next(message, 0)) handle(message);
   const tools::NatsState state = connection_->state();
   if (!state.connected) {
     remark(fmt::format("NATS is not reached: {}", nats_failure(state)));
@@ -329,7 +322,8 @@ bool NatsPublisher::attend(TrackPublisher& tracks) {
   if (state.connections != connections_) {
     // Somebody else may publish by now.
     const std::string reply = fmt::format("{}.{}", connection_->inbox(), ++requests_);
-    const auto last = answer_to(get_last(subjects_, subjects_.publisher(), reply), kRepeat);
+    const auto last =
+        answer_to(get_last(subjects_.kept_stream(), subjects_.publisher(), reply), kRepeat);
     if (!last || last->status == "503") return true;  // the next call tries again
     replaced_ = replaced_ || (last->status.empty() && claimed(*last) > epoch_);
     if (replaced_) return false;

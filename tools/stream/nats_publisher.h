@@ -64,7 +64,7 @@ class NatsPublisher {
   void wait_for_servers();
   void make_streams();
   [[nodiscard]] std::optional<Turn> claim(bool wait);
-  void handle(const tools::NatsMessage& message, TrackPublisher& tracks);
+  void handle(const tools::NatsMessage& message);
   void answered(const tools::NatsMessage& message);
   void repeat(TrackPublisher& tracks);
   void remark(const std::string& text);
@@ -74,7 +74,7 @@ class NatsPublisher {
   std::unique_ptr<tools::NatsConnection> connection_;
   std::uint64_t answers_ = 0, claims_ = 0, ticks_ = 0;  ///< subscriptions
   std::uint64_t requests_ = 0;                          ///< made so far
-  std::uint64_t epoch_ = 0, connections_ = 0, stored_ = 0;
+  std::uint64_t epoch_ = 0, connections_ = 0;
   std::deque<Unanswered> unanswered_;
   std::size_t unanswered_bytes_ = 0;
   bool replaced_ = false;

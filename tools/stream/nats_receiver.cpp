@@ -6,7 +6,7 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
+#include <set>
 #include <utility>
 
 namespace gicodec::streaming {
@@ -14,7 +14,6 @@ namespace {
 
 using tools::NatsMessage;
 
-constexpr double kHistorySilence = 2;  ///< seconds after which a request for updates is given up
 /// Messages taken at once, before the client gets what they make.
 constexpr int kMaxAtOnce = 4096;
 
@@ -97,27 +96,13 @@ void NatsReceiver::close() {
   if (!std::exchange(closed_, true)) push(NetEvent::Type::closed);
 }
 
-void NatsReceiver::take(std::span<const std::byte> message) {
-  const Status status = tracks_.receive(message);
-  if (status == Status::unknown_kind || status == Status::limit_exceeded)
-    tools::fail(tools::Exit::bad_input, "what is published cannot be used: {}", to_string(status));
-}
-
 void NatsReceiver::handle(const NatsMessage& message) {
-  const bool of_history =
-      history_.subscription != 0 && message.subscription == history_.subscription;
-  if (of_history) {
-    history_.heard = now();
-    if (message.status.empty()) take(message.data);
-    if (pending_behind(message) == 0) {
-      connection_->unsubscribe(std::exchange(history_, {}).subscription);
-    }
-    return;
-  }
-  // What answers a request for a message has its place in the stream.
+  // What answers a request for a message has its place in the stream; else there is none.
   const bool is_answer = message.subject.starts_with(connection_->inbox());
   if (is_answer && message.sequence == 0) return;
-  take(message.data);
+  const Status status = tracks_.receive(message.data);
+  if (status == Status::unknown_kind || status == Status::limit_exceeded)
+    tools::fail(tools::Exit::bad_input, "what is published cannot be used: {}", to_string(status));
 }
 
 /// Subscribes to the updates of wanted tracks, and to no others.
@@ -136,7 +121,7 @@ void NatsReceiver::follow_wanted() {
     if (subscriptions_.count(stream) != 0) continue;
     const auto name = tracks_.name(stream);
     if (!name) continue;
-    const std::uint64_t made = connection_->subscribe(subjects_.update(*name));
+    const std::uint64_t made = connection_->subscribe(subjects_.updates(*name));
     if (made != 0) subscriptions_[stream] = made;
   }
 }
@@ -144,39 +129,20 @@ void NatsReceiver::follow_wanted() {
 void NatsReceiver::fetch() {
   auto requests = tracks_.take_requests();
   if (!requests) return;
-  const auto get = [this](const std::string& subject) {
-    static_cast<void>(connection_->publish(
-        get_last(subjects_, subject, fmt::format("{}.{}", connection_->inbox(), ++requests_))));
+  const auto get = [this](const std::string& stream, const std::string& subject) {
+    const std::string reply = fmt::format("{}.{}", connection_->inbox(), ++requests_);
+    static_cast<void>(connection_->publish(get_last(stream, subject, reply)));
   };
   if (requests->list) {
-    get(subjects_.list());
-    get(subjects_.tick());
+    get(subjects_.kept_stream(), subjects_.list());
+    get(subjects_.kept_stream(), subjects_.tick());
   }
-  for (const StreamId stream : requests->snapshots) {
-    if (const auto name = tracks_.name(stream)) get(subjects_.snapshot(*name));
-    behind_.insert(stream);
+  for (const auto& [stream, number] : requests->objects) {
+    const auto name = tracks_.name(stream);
+    if (!name) continue;
+    get(number == 0 ? subjects_.kept_stream() : subjects_.update_stream(),
+        subjects_.object(*name, number));
   }
-  if (requests->position != 0) position_ = requests->position;
-  fetch_history();
-}
-
-/// Asks for the updates behind the snapshots, by one request for all tracks that lack some.
-void NatsReceiver::fetch_history() {
-  if (history_.subscription != 0) {
-    if (now() - history_.heard < kHistorySilence) return;
-    connection_->unsubscribe(std::exchange(history_, {}).subscription);
-  }
-  if (behind_.empty()) return;
-  std::vector<TrackName> names;
-  for (const StreamId stream : std::exchange(behind_, {})) {
-    if (const auto name = tracks_.name(stream)) names.push_back(*name);
-  }
-  if (names.empty()) return;
-  const std::string deliver = fmt::format("{}.h.{}", connection_->inbox(), ++requests_);
-  history_ = {connection_->subscribe(deliver), now(), now()};
-  static_cast<void>(
-      connection_->publish(get_updates(subjects_, subjects_.updates(names), position_, deliver,
-                                       fmt::format("{}.{}", connection_->inbox(), ++requests_))));
 }
 
 }  // namespace gicodec::streaming

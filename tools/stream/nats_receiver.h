@@ -11,7 +11,6 @@
 #include <deque>
 #include <map>
 #include <memory>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -35,17 +34,10 @@ class NatsReceiver {
   }
 
  private:
-  /// A request that brings updates, until it has brought all there were.
-  struct History {
-    std::uint64_t subscription = 0;
-    double began = 0, heard = 0;
-  };
   void watch_connection();
   void handle(const tools::NatsMessage& message);
-  void take(std::span<const std::byte> message);
   void follow_wanted();
   void fetch();
-  void fetch_history();
   void push(NetEvent::Type type, Message message = {});
 
   TrackSubjects subjects_;
@@ -55,9 +47,6 @@ class NatsReceiver {
   bool opened_ = false, closed_ = false;
   std::uint64_t wanted_changes_ = 0, requests_ = 0;
   std::map<StreamId, std::uint64_t> subscriptions_;  ///< of updates
-  std::set<StreamId> behind_;                        ///< whose updates are to be fetched
-  std::uint64_t position_ = 0;
-  History history_;
   std::deque<NetEvent> events_;
   std::uintptr_t tag_ = 0;
 };

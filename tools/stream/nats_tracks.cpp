@@ -9,7 +9,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <utility>
 
 namespace gicodec::streaming {
@@ -144,38 +143,25 @@ TrackSubjects::TrackSubjects(const std::string& prefix) : prefix_(prefix) {
   updates_ = name + "-updates";
 }
 
-std::string TrackSubjects::update(const TrackName& track) const {
-  return fmt::format("{}.{}.{}.{}.{}.{}", prefix_, subject_token(track.volume),
-                     subject_token(track.texture), track.place.x, track.place.y, track.place.z);
-}
-
-std::string TrackSubjects::updates(std::span<const TrackName> tracks) const {
-  const TrackName& first = tracks.front();
-  const auto token = [&](auto of, const auto& text) {
-    const bool same =
-        std::ranges::all_of(tracks, [&](const TrackName& track) { return of(track) == of(first); });
-    return same ? fmt::format("{}", text(of(first))) : std::string("*");
-  };
-  const auto name = [](std::string_view text) { return subject_token(text); };
-  const auto number = [](std::uint32_t value) { return value; };
-  return fmt::format("{}.{}.{}.{}.{}.{}", prefix_,
-                     token([](const TrackName& track) { return track.volume; }, name),
-                     token([](const TrackName& track) { return track.texture; }, name),
-                     token([](const TrackName& track) { return track.place.x; }, number),
-                     token([](const TrackName& track) { return track.place.y; }, number),
-                     token([](const TrackName& track) { return track.place.z; }, number));
+std::string TrackSubjects::object(const TrackName& track, std::uint32_t number) const {
+  const auto [volume, texture, place] = track;
+  return fmt::format("{}.{}.{}.{}.{}.{}{}", prefix_, subject_token(volume), subject_token(texture),
+                     place.x, place.y, place.z,
+                     number == 0 ? std::string() : fmt::format(".{}", number));
 }
 
 std::vector<std::string> TrackSubjects::kept_subjects() const {
-  return {prefix_ + ".*.*.*.*.*" + kLast, list(), tick(), publisher()};
+  return {prefix_ + ".*.*.*.*.*", list(), tick(), publisher()};
 }
 
-std::vector<std::string> TrackSubjects::update_subjects() const { return {prefix_ + ".*.*.*.*.*"}; }
+std::vector<std::string> TrackSubjects::update_subjects() const {
+  return {prefix_ + ".*.*.*.*.*.*"};
+}
 
 NatsMessage make_kept_stream(const TrackSubjects& subjects, const StreamSettings& settings,
                              bool exists, const std::string& reply) {
-  return make_stream(subjects.kept_stream(), subjects.kept_subjects(), settings,
-                     {{"max_msgs_per_subject", 1}}, exists, reply);
+  return make_stream(subjects.kept_stream(), subjects.kept_subjects(), settings, json::object(),
+                     exists, reply);
 }
 
 NatsMessage make_update_stream(const TrackSubjects& subjects, const StreamSettings& settings,
@@ -186,29 +172,9 @@ NatsMessage make_update_stream(const TrackSubjects& subjects, const StreamSettin
                      exists, reply);
 }
 
-NatsMessage get_last(const TrackSubjects& subjects, const std::string& subject,
+NatsMessage get_last(const std::string& stream, const std::string& subject,
                      const std::string& reply) {
-  return request(fmt::format("$JS.API.DIRECT.GET.{}.{}", subjects.kept_stream(), subject), reply,
-                 nullptr);
-}
-
-NatsMessage get_updates(const TrackSubjects& subjects, const std::string& subject,
-                        std::uint64_t first, const std::string& deliver, const std::string& reply) {
-  json config{{"deliver_subject", deliver},
-              {"filter_subject", subject},
-              {"ack_policy", "none"},
-              {"max_deliver", 1},
-              {"mem_storage", true},
-              {"num_replicas", 1},
-              {"inactive_threshold", static_cast<std::int64_t>(5 * kNanoseconds)}};
-  if (first == 0) {
-    config["deliver_policy"] = "all";
-  } else {
-    config["deliver_policy"] = "by_start_sequence";
-    config["opt_start_seq"] = first;
-  }
-  return request("$JS.API.CONSUMER.CREATE." + subjects.update_stream(), reply,
-                 {{"stream_name", subjects.update_stream()}, {"config", config}});
+  return request(fmt::format("$JS.API.DIRECT.GET.{}.{}", stream, subject), reply, nullptr);
 }
 
 StreamAnswer stream_answer(const NatsMessage& message) {
@@ -232,17 +198,6 @@ StreamAnswer stream_answer(const NatsMessage& message) {
   if (const auto sequence = said.find("seq"); sequence != said.end() && sequence->is_number())
     answer.sequence = sequence->get<std::uint64_t>();
   return answer;
-}
-
-std::optional<std::uint64_t> pending_behind(const NatsMessage& message) {
-  // "$JS.ACK.stream.consumer.deliveries.sequence.of consumer.time.pending"
-  const auto dot = message.reply.rfind('.');
-  if (!message.reply.starts_with("$JS.ACK.") || dot == std::string::npos) return std::nullopt;
-  std::uint64_t pending = 0;
-  const char* const end = message.reply.data() + message.reply.size();
-  const auto [last, error] = std::from_chars(message.reply.data() + dot + 1, end, pending);
-  if (error != std::errc() || last != end) return std::nullopt;
-  return pending;
 }
 
 }  // namespace gicodec::streaming

@@ -9,8 +9,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,14 +32,16 @@ class TrackSubjects {
   /// Throws tools::Error of Exit::usage for a prefix that makes no subject.
   explicit TrackSubjects(const std::string& prefix);
 
-  [[nodiscard]] std::string update(const TrackName& track) const;
-  [[nodiscard]] std::string snapshot(const TrackName& track) const { return update(track) + kLast; }
+  /// Of a track's snapshots, number 0, or of its other objects of a number.
+  [[nodiscard]] std::string object(const TrackName& track, std::uint32_t number) const;
+  /// Of all of a track's objects that are no snapshots.
+  [[nodiscard]] std::string updates(const TrackName& track) const {
+    return object(track, 0) + ".*";
+  }
   [[nodiscard]] std::string list() const { return prefix_ + ".list"; }
   [[nodiscard]] std::string tick() const { return prefix_ + ".tick"; }
   /// Its last message says which publisher there is.
   [[nodiscard]] std::string publisher() const { return prefix_ + ".publisher"; }
-  /// The narrowest subject with wildcards that has the updates of all these tracks.
-  [[nodiscard]] std::string updates(std::span<const TrackName> tracks) const;
 
   /// The stream of the last message of each subject, and that of updates.
   [[nodiscard]] const std::string& kept_stream() const noexcept { return kept_; }
@@ -50,7 +50,6 @@ class TrackSubjects {
   [[nodiscard]] std::vector<std::string> update_subjects() const;
 
  private:
-  static constexpr const char* kLast = ".snapshot";
   std::string prefix_, kept_, updates_;
 };
 
@@ -70,12 +69,8 @@ struct StreamSettings {
                                                     const StreamSettings& settings, bool exists,
                                                     const std::string& reply);
 /// The last message of a subject, from any server that holds it, which may be behind.
-[[nodiscard]] tools::NatsMessage get_last(const TrackSubjects& subjects, const std::string& subject,
+[[nodiscard]] tools::NatsMessage get_last(const std::string& stream, const std::string& subject,
                                           const std::string& reply);
-/// The updates of a subject from a sequence on, to `deliver`.
-[[nodiscard]] tools::NatsMessage get_updates(const TrackSubjects& subjects,
-                                             const std::string& subject, std::uint64_t first,
-                                             const std::string& deliver, const std::string& reply);
 
 /// What JetStream answers to a message that it stores, or to make_…_stream().
 struct StreamAnswer {
@@ -87,7 +82,4 @@ struct StreamAnswer {
 inline constexpr int kErrorStreamExists = 10058;
 inline constexpr int kErrorWrongSequence = 10071;
 [[nodiscard]] StreamAnswer stream_answer(const tools::NatsMessage& message);
-/// How many messages wait behind this one, which a get_updates() brought.
-[[nodiscard]] std::optional<std::uint64_t> pending_behind(const tools::NatsMessage& message);
-
 }  // namespace gicodec::streaming

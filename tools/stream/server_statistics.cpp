@@ -214,6 +214,7 @@ ordered_json ServerStatistics::line(Server& server, double now) {
                       {"encode_ms", rounded(encode_.mean_ms())},
                       {"late", late_},
                       {"memory_bytes", server.memory()}};
+  if (published_) totals["published"] = published_json();
   trace_ = encode_ = views_ = {};
   last_updates_ = updates_;
   last_ = now;
@@ -222,6 +223,16 @@ ordered_json ServerStatistics::line(Server& server, double now) {
           {"update", server.updates()},
           {"clients", std::move(clients)},
           {"totals", std::move(totals)}};
+}
+
+/// Since the beginning.
+ordered_json ServerStatistics::published_json() const {
+  return {{"updates", published_->updates},
+          {"update_bytes", published_->update_bytes},
+          {"snapshots", published_->snapshots},
+          {"snapshot_bytes", published_->snapshot_bytes},
+          {"other_bytes", published_->other_bytes},
+          {"unanswered", unanswered_}};
 }
 
 void ServerStatistics::write(const ordered_json& json) {
@@ -265,6 +276,14 @@ void ServerStatistics::table(Server& server) const {
   row("trace", all_trace_);
   row("views", all_views_);
   row("encode", all_encode_);
+  if (published_) {
+    const std::uint64_t bytes =
+        published_->update_bytes + published_->snapshot_bytes + published_->other_bytes;
+    tools::print("published {:10.2f} Mbps  {} bytes, {:.1f} % of them snapshots\n",
+                 mbps(bytes, seconds), bytes,
+                 100 * static_cast<double>(published_->snapshot_bytes) /
+                     static_cast<double>(std::max<std::uint64_t>(bytes, 1)));
+  }
   tools::print("memory    {:10.1f} MB\n", static_cast<double>(server.memory()) * 1e-6);
 }
 
@@ -273,7 +292,7 @@ void ServerStatistics::finish(Server& server, double now) {
   for (auto& [id, connection] : connections_) collect(server, id, connection);
   if (now > last_ && wants_lines()) write(line(server, now));
   const double seconds = updating_seconds();
-  const ordered_json summary{
+  ordered_json summary{
       {"time", utc_time()},
       {"seconds", rounded(seconds)},
       {"updates", updates_},
@@ -288,6 +307,7 @@ void ServerStatistics::finish(Server& server, double now) {
       {"views_ms", rounded(all_views_.mean_ms())},
       {"encode_ms", rounded(all_encode_.mean_ms())},
       {"memory_bytes", server.memory()}};
+  if (published_) summary["published"] = published_json();
   write({{"summary", summary}});
   if (terminal_) clear_status();
   if (!output_.json && !output_.quiet) table(server);

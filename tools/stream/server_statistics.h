@@ -5,6 +5,7 @@
 #include "play_feed.h"
 
 #include <gicodec/server.h>
+#include <gicodec/tracks.h>
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -12,6 +13,7 @@
 #include <cstdio>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -54,6 +56,11 @@ class ServerStatistics {
   void updated(Server& server, const Update& update);
   void viewed(double seconds) { views_.add(seconds), all_views_.add(seconds); }
   void late() { ++late_; }
+  /// What has gone to NATS so far, and how many messages the servers have not stored yet.
+  void published(const TrackStatistics& tracks, std::uint64_t unanswered) {
+    published_ = tracks;
+    unanswered_ = unanswered;
+  }
   struct Totals {
     std::uint64_t late = 0, bytes = 0, blocks = 0;
     Durations encode, latency;
@@ -82,6 +89,7 @@ class ServerStatistics {
   void status(const nlohmann::ordered_json& line) const;
   [[nodiscard]] double updating_seconds() const;
   void table(Server& server) const;
+  [[nodiscard]] nlohmann::ordered_json published_json() const;
 
   Output output_;
   std::vector<std::string> streams_;       ///< columns of the log: the volumes' textures
@@ -92,6 +100,8 @@ class ServerStatistics {
   std::vector<float> all_latencies_;
   std::vector<float> recent_;  ///< latencies, the oldest replaced by the newest
   Durations latency_;
+  std::optional<TrackStatistics> published_;
+  std::uint64_t unanswered_ = 0;
   std::uint64_t updates_ = 0, late_ = 0, bytes_ = 0, blocks_ = 0, last_updates_ = 0;
   std::size_t most_connections_ = 0;
   double began_ = -1, last_ = 0;

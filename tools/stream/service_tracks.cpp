@@ -11,7 +11,9 @@ void Service::begin_tracks() {
 }
 
 void Service::publish_tracks() {
-  if (nats_) nats_->publish(*tracks_);
+  if (!nats_) return;
+  nats_->publish(*tracks_);
+  statistics_.published(tracks_->statistics(), nats_->unanswered());
 }
 
 /// Ends the program if another publisher has taken over.

@@ -98,6 +98,7 @@ class Viewer {
     const auto refused =
         options_.scene ? ddgi::refusal(*options_.scene, frame.scene) : std::nullopt;
     if (refused) tools::fail(tools::Exit::bad_input, "{}", *refused);
+    if (seen_ != 0) result_.longest_pause = std::max(result_.longest_pause, at - last_);
     if (seen_ == 0) {
       first_ = next_picture_ = at;
       began_ = frame.began;
@@ -182,6 +183,7 @@ class Viewer {
     result_.connections = link_.connections();
     result_.resumed = client_.latest().began == began_;
     result_.seconds = last_ - first_;
+    result_.first_seconds = std::max(first_ - begin_, 0.0);
     result_.all_seconds = now() - begin_;
     return std::move(result_);
   }

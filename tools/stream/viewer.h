@@ -41,6 +41,8 @@ struct ViewerResult {
   std::vector<std::string> lossy;  ///< textures with errors, and their bounds
   std::uint32_t frames = 0;
   double seconds = 0;         ///< from the first update to the last
+  double first_seconds = 0;   ///< from the first attempt to connect to the first update
+  double longest_pause = 0;   ///< seconds between two updates
   double all_seconds = 0;     ///< from the first attempt to connect to the end
   double render_seconds = 0;  ///< of all frames
 };

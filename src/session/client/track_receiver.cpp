@@ -257,18 +257,32 @@ std::span<const StreamId> TrackReceiver::wanted() const noexcept {
 
 std::uint64_t TrackReceiver::wanted_changes() const noexcept { return state_->changes; }
 
+/// Of a track that has lost some objects after its snapshot these are enough, at first.
+void TrackReceiver::State::request(const TrackUnit& unit, const Track& track,
+                                   std::vector<TrackRequests::Object>& out) const {
+  const LastObject last = tick ? last_object(*tick, track.stream) : LastObject{};
+  if (has_all(track, track.at)) return;
+  const bool knows_group = track.at != 0 && track.at >= track.snapshot;
+  const std::uint32_t held = track.at > track.snapshot ? track.number : 0;
+  std::uint32_t next = 0;
+  if (knows_group && held < last.number && unit.behind <= kFirstPatience) next = held + 1;
+  for (; next <= last.number; ++next) out.push_back({track.stream, next});
+}
+
 Result<TrackRequests> TrackReceiver::take_requests() {
   return guarded([&]() -> Result<TrackRequests> {
     State& s = *state_;
     TrackRequests requests;
-    for (const StreamId stream : wanted()) {
-      if (s.table->find(stream).first->asks) requests.snapshots.push_back(stream);
+    // Without a tick it is not known what there is.
+    const auto wanted_now = s.tick ? wanted() : std::span<const StreamId>();
+    for (const StreamId stream : wanted_now) {
+      const auto [unit, track] = s.table->find(stream);
+      if (unit->asks) s.request(*unit, *track, requests.objects);
     }
     // From here on nothing can fail.
-    for (const StreamId stream : requests.snapshots) s.table->find(stream).first->asks = false;
-    if (s.table) requests.position = s.table->list().position;
+    for (const StreamId stream : wanted_now) s.table->find(stream).first->asks = false;
     requests.list = std::exchange(s.wants_list, false);
-    s.statistics.requests += requests.snapshots.size();
+    s.statistics.requests += requests.objects.size();
     return requests;
   });
 }

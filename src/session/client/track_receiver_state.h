@@ -22,6 +22,13 @@ inline constexpr std::uint32_t kFirstPatience = 2, kLastPatience = 16;
   return waiting.bytes.size() + kObject;
 }
 
+/// Update and number of a stream's last object, by a tick; zeros: the tick does not name it.
+struct LastObject {
+  std::uint64_t update = 0;
+  std::uint32_t number = 0;
+};
+[[nodiscard]] LastObject last_object(const TrackTick& tick, StreamId stream) noexcept;
+
 /// An object to apply.
 struct TrackStep {
   Track* track;
@@ -54,6 +61,8 @@ struct TrackReceiver::State {
   }
   [[nodiscard]] int compare_run(std::uint64_t epoch, std::uint32_t generation) noexcept;
   void choose();
+  void request(const TrackUnit& unit, const Track& track,
+               std::vector<TrackRequests::Object>& out) const;
   void count_waiting() noexcept;
   void forget_all_waiting() noexcept;
   [[nodiscard]] bool has_all(const Track& track, std::uint64_t end) const noexcept;

@@ -23,13 +23,14 @@ struct WaitingObject {
 struct Track {
   StreamId stream = {};
   std::uint64_t at = 0;         ///< update of the last object that the client got; 0: none
+  std::uint32_t number = 0;     ///< of that object
   std::uint64_t confirmed = 0;  ///< the last tick as of which the client had all of the track
   std::uint64_t snapshot = 0;   ///< update of the last one, by the list; 0: there is none
   HeldState sent = {};          ///< that the client holds after that object
   std::optional<WaitingObject> newest_snapshot;
   std::map<std::uint64_t, WaitingObject> updates;  ///< by their updates
 
-  void forget_held() noexcept { at = confirmed = 0, sent = {}; }
+  void forget_held() noexcept { at = confirmed = 0, number = 0, sent = {}; }
   void forget_waiting() noexcept { newest_snapshot.reset(), updates.clear(); }
 };
 
@@ -43,7 +44,7 @@ struct TrackUnit {
   bool wanted = false;
   float distance = 0;        ///< from the viewpoint
   std::uint32_t behind = 0;  ///< ticks since something was missing
-  bool asks = false;         ///< snapshots are to be requested
+  bool asks = false;         ///< objects are to be requested
   std::vector<Track> tracks = {};
 };
 

@@ -15,18 +15,17 @@ constexpr std::size_t kUpdateBytes = std::size_t{16} << 20;
 /// The client puts it into its next Hello, which begins anew all the same.
 constexpr Ticket kTicket{std::byte{1}};
 
-/// The update of the last run that holds a stream; 0: none does.
-std::uint64_t changed_at(const TrackTick& tick, StreamId stream) noexcept {
+}  // namespace
+
+LastObject last_object(const TrackTick& tick, StreamId stream) noexcept {
   const auto after = [](StreamId id, const TrackRun& run) { return id < run.first; };
   auto run = std::upper_bound(tick.changed.begin(), tick.changed.end(), stream, after);
-  if (run == tick.changed.begin()) return 0;
+  if (run == tick.changed.begin()) return {};
   --run;
   const bool holds = run->first.volume == stream.volume && run->first.texture == stream.texture &&
                      stream.region - run->first.region < run->count;
-  return holds ? tick.update - run->age : 0;
+  return holds ? LastObject{tick.update - run->age, run->number} : LastObject{};
 }
-
-}  // namespace
 
 /// The update of the last object that can be applied after `from`, none later than `last`.
 std::uint64_t TrackReceiver::State::reach_from(const Track& track, std::uint64_t from,
@@ -40,7 +39,7 @@ std::uint64_t TrackReceiver::State::reach_from(const Track& track, std::uint64_t
 
 /// True if a track that ends with this update has all that the tick tells of.
 bool TrackReceiver::State::has_all(const Track& track, std::uint64_t end) const noexcept {
-  if (const std::uint64_t changed = changed_at(*tick, track.stream); changed != 0)
+  if (const std::uint64_t changed = last_object(*tick, track.stream).update; changed != 0)
     return end >= changed;
   // It has not changed since the round.
   if (track.confirmed >= tick->round && track.confirmed != 0) return true;
@@ -135,6 +134,7 @@ Status TrackReceiver::State::advance(std::vector<Message>& out) {
   // From here on nothing can fail.
   for (const TrackStep& step : steps) {
     const auto parts = parse_packet(step.waiting->object.packets.back());
+    step.track->number = step.waiting->object.number;
     step.track->sent = {};
     if (parts) {
       const auto packet = step.waiting->object.packets.back();

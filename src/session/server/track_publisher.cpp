@@ -14,12 +14,16 @@
 namespace gicodec {
 namespace {
 
+/// Objects after a snapshot, at most: a receiver that comes late fetches each of them.
+constexpr std::uint32_t kMaxObjects = 250;
+
 /// What was published of a track.
 struct Track {
   std::uint64_t changed = 0;         ///< update of the last object
   std::uint64_t snapshot = 0;        ///< update of the last snapshot; 0: none
   std::uint64_t snapshot_bytes = 0;  ///< its size
   std::uint64_t bytes = 0;           ///< of the objects after it
+  std::uint32_t number = 0;          ///< of these objects
 
   [[nodiscard]] bool is_dirty() const noexcept { return changed > snapshot; }
 };
@@ -33,17 +37,18 @@ Packets by_stream(std::span<const OutgoingPacket> packets) {
 }
 
 /// Adds a track to runs that ascend.
-void add_to(std::vector<TrackRun>& runs, const StreamId& stream, std::uint64_t age) {
+void add_to(std::vector<TrackRun>& runs, const StreamId& stream, std::uint64_t age,
+            std::uint32_t number) {
   if (!runs.empty()) {
     TrackRun& last = runs.back();
     StreamId next = last.first;
     next.region += last.count;
-    if (next == stream && last.age == age) {
+    if (next == stream && last.age == age && last.number == number) {
       ++last.count;
       return;
     }
   }
-  runs.push_back({stream, 1, age});
+  runs.push_back({stream, 1, age, number});
 }
 
 }  // namespace
@@ -63,8 +68,8 @@ struct TrackPublisher::State {
   void begin_round(double now);
   void end_round();
   void forget_removed();
-  void add_message(TrackMessage::Type type, StreamId stream, const AnyMessage& message);
-  void add_object(TrackMessage::Type type, ClientId client, StreamId stream,
+  void add_message(TrackMessage::Type type, const AnyMessage& message);
+  void add_object(ClientId client, StreamId stream,
                   std::span<const std::span<const std::byte>> packets);
   void add_tick(double time);
   void add_list();
@@ -79,9 +84,8 @@ struct TrackPublisher::State {
   std::uint32_t generation = 0;      ///< of the last list; 0: there was none
   std::uint64_t round_began = 0;     ///< the last update before this round
   std::uint64_t round = 0;           ///< that of the last round that ended
-  std::uint64_t position = 0, round_position = 0;
-  double round_at = 0;  ///< when the last round began
-  double stretch = 1;   ///< of the interval
+  double round_at = 0;               ///< when the last round began
+  double stretch = 1;                ///< of the interval
   std::vector<TrackMessage> messages;
   TrackStatistics statistics;
 };
@@ -111,11 +115,12 @@ bool TrackPublisher::State::round_is_due(double now) const noexcept {
   if (newcomer != 0) return false;
   if (first) return true;
   std::uint64_t snapshots = 0, objects = 0;
-  bool any = false, none_yet = false;
+  bool any = false, none_yet = false, many = false;
   for (const auto& [stream, track] : tracks) {
     if (!track.is_dirty()) continue;
     any = true;
     none_yet = none_yet || track.snapshot == 0;
+    many = many || track.number >= kMaxObjects;
     snapshots += track.snapshot_bytes;
     objects += track.bytes;
   }
@@ -123,7 +128,7 @@ bool TrackPublisher::State::round_is_due(double now) const noexcept {
   const double share = options.snapshot_share;
   const bool pays =
       static_cast<double>(objects) * share >= static_cast<double>(snapshots) * (1 - share);
-  return none_yet || pays || now - round_at >= options.snapshot_seconds * stretch;
+  return none_yet || many || pays || now - round_at >= options.snapshot_seconds * stretch;
 }
 
 /// Lets a newcomer join that sees the tracks that have changed since their snapshots.
@@ -132,7 +137,6 @@ void TrackPublisher::State::begin_round(double now) {
   if (!joined) return;  // the next update tries again
   newcomer = *joined;
   round_began = distributor().updates();
-  round_position = position;
   const bool is_late = !first && now - round_at >= options.snapshot_seconds * stretch;
   stretch = std::clamp(is_late ? stretch * 2 : stretch / 2, 1.0, TrackOptions::kLongest);
   round_at = now;
@@ -185,25 +189,24 @@ void TrackPublisher::State::forget_removed() {
   std::erase_if(awaited, is_gone);
 }
 
-void TrackPublisher::State::add_message(TrackMessage::Type type, StreamId stream,
-                                        const AnyMessage& message) {
+void TrackPublisher::State::add_message(TrackMessage::Type type, const AnyMessage& message) {
   TrackMessage& made = messages.emplace_back();
   made.type = type;
-  made.stream = stream;
   const Status status = write_message(message, made.bytes);
   if (status == Status::out_of_memory) fail_allocation();
-  if (type == TrackMessage::Type::list || type == TrackMessage::Type::tick)
-    statistics.other_bytes += made.bytes.size();
+  if (type != TrackMessage::Type::object) statistics.other_bytes += made.bytes.size();
 }
 
-void TrackPublisher::State::add_object(TrackMessage::Type type, ClientId client, StreamId stream,
+/// Adds an object of what a client gets; it is a snapshot if that is the newcomer.
+void TrackPublisher::State::add_object(ClientId client, StreamId stream,
                                        std::span<const std::span<const std::byte>> packets) {
   Track& track = tracks[stream];
   const std::uint64_t update = distributor().updates();
-  const bool is_snapshot = type == TrackMessage::Type::snapshot;
+  const bool is_snapshot = client == newcomer;
   TrackObject object{server.state_->options.epoch,
                      update,
                      is_snapshot ? 0 : std::exchange(track.changed, update),
+                     is_snapshot ? 0 : ++track.number,
                      server.state_->generation,
                      stream,
                      {packets.begin(), packets.end()},
@@ -211,12 +214,16 @@ void TrackPublisher::State::add_object(TrackMessage::Type type, ClientId client,
   if (server.state_->options.proofs) {
     if (const auto hash = distributor().state_hash(client, stream)) object.proof = {*hash};
   }
-  add_message(type, stream, object);
-  const std::uint64_t bytes = messages.back().bytes.size();
+  add_message(TrackMessage::Type::object, object);
+  TrackMessage& made = messages.back();
+  made.stream = stream;
+  made.number = object.number;
+  const std::uint64_t bytes = made.bytes.size();
   if (is_snapshot) {
     track.snapshot = update;
     track.snapshot_bytes = bytes;
     track.bytes = 0;
+    track.number = 0;
     ++statistics.snapshots;
     statistics.snapshot_bytes += bytes;
   } else {
@@ -238,20 +245,20 @@ void TrackPublisher::State::add_tick(double time) {
     if (!volume->removed()) tick.scrolls.push_back(volume->described.geometry.scroll);
   }
   for (const auto& [stream, track] : tracks) {
-    if (track.changed > round) add_to(tick.changed, stream, tick.update - track.changed);
+    if (track.changed > round)
+      add_to(tick.changed, stream, tick.update - track.changed, track.number);
   }
-  add_message(TrackMessage::Type::tick, {}, tick);
+  add_message(TrackMessage::Type::tick, tick);
 }
 
 void TrackPublisher::State::add_list() {
   const Server::State& from = *server.state_;
-  TrackList list{
-      from.options.epoch, distributor().updates(), round, round_position, from.options.scene,
-      from.generation,    from.described_now(),    {}};
+  TrackList list{from.options.epoch, distributor().updates(), round, from.options.scene,
+                 from.generation,    from.described_now(),    {}};
   for (const auto& [stream, track] : tracks) {
-    if (track.snapshot != 0) add_to(list.snapshots, stream, list.update - track.snapshot);
+    if (track.snapshot != 0) add_to(list.snapshots, stream, list.update - track.snapshot, 0);
   }
-  add_message(TrackMessage::Type::list, {}, list);
+  add_message(TrackMessage::Type::list, list);
   generation = from.generation;
 }
 
@@ -269,13 +276,13 @@ Status TrackPublisher::update(double now, double time) {
   const Status made = guarded([&]() -> Status {
     if (s.generation != s.server.state_->generation && s.generation != 0) s.add_list();
     for (const auto& [stream, packets] : by_stream(s.distributor().packets(s.all))) {
-      s.add_object(TrackMessage::Type::update, s.all, stream, packets);
+      s.add_object(s.all, stream, packets);
       if (s.first) s.awaited.emplace(stream, false);
     }
     for (const auto& [stream, packets] : by_stream(s.distributor().packets(s.newcomer))) {
       const auto awaited = s.awaited.find(stream);
       if (awaited == s.awaited.end() || awaited->second) continue;
-      s.add_object(TrackMessage::Type::snapshot, s.newcomer, stream, packets);
+      s.add_object(s.newcomer, stream, packets);
       awaited->second = true;
     }
     s.add_tick(time);
@@ -303,8 +310,6 @@ std::optional<TrackName> TrackPublisher::name(StreamId stream) const noexcept {
   }
   return std::nullopt;
 }
-
-void TrackPublisher::set_position(std::uint64_t position) noexcept { state_->position = position; }
 
 void TrackPublisher::repeat_snapshots() noexcept {
   for (auto& [stream, track] : state_->tracks) track.snapshot = 0;
