@@ -126,6 +126,16 @@ class TrackWorld {
       if (i >= (limited_ ? kLimited : 8) && settled()) break;
     }
     EXPECT_TRUE(settled());
+    // Who comes now has all at once.
+    for (int i = 0; i < 4 && !testing::Test::HasFailure(); ++i) {
+      if (chance(random_, 2)) change();
+      step(true);
+      step(true);
+      join();
+      for (int steps = 0; steps < 3; ++steps) step(true);
+      EXPECT_TRUE(audience_.back()->receiver->complete());
+      EXPECT_EQ(audience_.back()->client->frame().update, server_->updates());
+    }
     for (const auto& one : audience_) {
       compare(*one);
       compared += one->compared;

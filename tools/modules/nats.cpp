@@ -222,6 +222,7 @@ natsStatus LibNats::set_options(natsOptions* options) {
   const auto set = [&status](natsStatus next) {
     if (status == NATS_OK) status = next;
   };
+  set(natsOptions_SetNoRandomize(options, true));
   set(natsOptions_SetName(options, options_.name.c_str()));
   set(natsOptions_SetTimeout(options, timeout));
   set(natsOptions_SetWriteDeadline(options, timeout));

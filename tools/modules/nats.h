@@ -13,7 +13,7 @@
 namespace gicodec::tools {
 
 struct NatsOptions {
-  std::vector<std::string> urls;  ///< nats://host:port or tls://host:port, of one cluster
+  std::vector<std::string> urls;  ///< nats://host:port or tls://host:port, tried in this order
   std::string name;               ///< of this program, for operators
   std::string user, password;     ///< empty: none
   std::string ca;                 ///< file of authorities to trust; empty: the system's

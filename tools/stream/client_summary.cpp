@@ -79,6 +79,7 @@ void summarise(const ViewerResult& r, const Recorded& recorded, bool json) {
     const ordered_json summary{{"updates", r.updates},
                                {"seconds", rounded(r.seconds)},
                                {"all_seconds", rounded(r.all_seconds)},
+                               {"connect_ms", rounded(r.connect_seconds * 1e3)},
                                {"first_ms", rounded(r.first_seconds * 1e3)},
                                {"longest_pause_ms", rounded(r.longest_pause * 1e3)},
                                {"mbps", rounded(mbps(r.statistics.bytes, r.seconds))},

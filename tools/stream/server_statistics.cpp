@@ -227,12 +227,9 @@ ordered_json ServerStatistics::line(Server& server, double now) {
 
 /// Since the beginning.
 ordered_json ServerStatistics::published_json() const {
-  return {{"updates", published_->updates},
-          {"update_bytes", published_->update_bytes},
-          {"snapshots", published_->snapshots},
-          {"snapshot_bytes", published_->snapshot_bytes},
-          {"other_bytes", published_->other_bytes},
-          {"unanswered", unanswered_}};
+  return {{"updates", published_->updates},         {"update_bytes", published_->update_bytes},
+          {"snapshots", published_->snapshots},     {"snapshot_bytes", published_->snapshot_bytes},
+          {"other_bytes", published_->other_bytes}, {"unanswered", unanswered_}};
 }
 
 void ServerStatistics::write(const ordered_json& json) {

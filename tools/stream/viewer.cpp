@@ -51,6 +51,8 @@ class Viewer {
       // Reads the state first: updates that came before the end still count.
       const bool ended =
           link_.state() == ClientLink::State::ended || link_.state() == ClientLink::State::failed;
+      if (result_.connect_seconds == 0 && link_.connections() > 0)
+        result_.connect_seconds = at - begin_;
       const ClientFrame& frame = client_.latest();
       if (frame.serial != seen_) take(frame, at);
       if (options_.seconds > 0 && at - begin_ > options_.seconds) break;

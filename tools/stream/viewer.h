@@ -40,11 +40,12 @@ struct ViewerResult {
   bool resumed = false;            ///< the session continued after every lost connection
   std::vector<std::string> lossy;  ///< textures with errors, and their bounds
   std::uint32_t frames = 0;
-  double seconds = 0;         ///< from the first update to the last
-  double first_seconds = 0;   ///< from the first attempt to connect to the first update
-  double longest_pause = 0;   ///< seconds between two updates
-  double all_seconds = 0;     ///< from the first attempt to connect to the end
-  double render_seconds = 0;  ///< of all frames
+  double seconds = 0;          ///< from the first update to the last
+  double connect_seconds = 0;  ///< from the first attempt to connect to a connection
+  double first_seconds = 0;    ///< the same to the first update
+  double longest_pause = 0;    ///< seconds between two updates
+  double all_seconds = 0;      ///< from the first attempt to connect to the end
+  double render_seconds = 0;   ///< of all frames
 };
 
 /// `renderer` may be nullptr if options.frames is 0. Throws tools::Error.

@@ -9,13 +9,6 @@
 #include <utility>
 
 namespace gicodec {
-namespace {
-
-/// Ticks that the units of another epoch have before the client begins with fewer.
-constexpr std::uint32_t kEpochPatience = 32;
-
-}  // namespace
-
 TrackReceiver::TrackReceiver(std::unique_ptr<State> state) noexcept : state_(std::move(state)) {}
 TrackReceiver::TrackReceiver(TrackReceiver&&) noexcept = default;
 TrackReceiver& TrackReceiver::operator=(TrackReceiver&&) noexcept = default;
@@ -83,7 +76,7 @@ Status TrackReceiver::State::take(TrackList list) {
     welcomed = false;
     table = *std::move(made);
     tick.reset();
-    ticks = 0;
+    ticks = ticks_before = 0;
     waiting_bytes = 0;
     choose();
   }
@@ -177,7 +170,8 @@ Status TrackReceiver::State::answer(const Hello& hello) {
   if (hello.delivery != Delivery::shared) return Status::invalid_argument;
   sync = hello.sync;
   number = 0;
-  welcomed = restarts = false;
+  welcomed = restarts = begun = false;
+  ticks_before = ticks;
   if (!table) return Status::ok;
   for (TrackUnit& unit : table->units()) {
     for (Track& track : unit.tracks) track.forget_held();
@@ -247,7 +241,7 @@ void TrackReceiver::State::choose() {
 
 bool TrackReceiver::wants_hello() const noexcept {
   const State& s = *state_;
-  return s.restarts && s.tick && (s.all || s.ticks >= kEpochPatience);
+  return s.restarts && s.tick && (s.all || s.ticks >= kFirstTicks);
 }
 
 std::span<const StreamId> TrackReceiver::wanted() const noexcept {

@@ -15,6 +15,8 @@ namespace gicodec {
 
 /// Ticks after which what is missing is requested again: so many, then twice as many each time.
 inline constexpr std::uint32_t kFirstPatience = 2, kLastPatience = 16;
+/// Ticks for which a client that begins waits until all that it wants has come.
+inline constexpr std::uint32_t kFirstTicks = 10;
 
 /// Memory that an object takes while it waits.
 [[nodiscard]] inline std::size_t memory_of(const WaitingObject& waiting) noexcept {
@@ -88,6 +90,8 @@ struct TrackReceiver::State {
   bool restarts = false;              ///< the client had a session of another table
   bool answered = false;              ///< the client has said what it wishes to see
   std::uint32_t ticks = 0;            ///< of the table
+  std::uint32_t ticks_before = 0;     ///< those before the client's Hello
+  bool begun = false;                 ///< the client has got an update since
   bool all = false;                   ///< see complete()
   std::uint64_t changes = 0;          ///< of the wanted tracks
   std::size_t waiting_bytes = 0;

@@ -15,6 +15,12 @@ constexpr std::size_t kUpdateBytes = std::size_t{16} << 20;
 /// The client puts it into its next Hello, which begins anew all the same.
 constexpr Ticket kTicket{std::byte{1}};
 
+/// True if an object after `held` applies to the state as of that update: the track did not change
+/// between `previous` and the object.
+bool builds_on(const TrackObject& object, std::uint64_t held) noexcept {
+  return object.previous != 0 && object.previous <= held;
+}
+
 }  // namespace
 
 LastObject last_object(const TrackTick& tick, StreamId stream) noexcept {
@@ -32,7 +38,7 @@ std::uint64_t TrackReceiver::State::reach_from(const Track& track, std::uint64_t
                                                std::uint64_t last) noexcept {
   for (auto it = track.updates.upper_bound(from); it != track.updates.end() && it->first <= last;
        ++it) {
-    if (it->second.object.previous == from) from = it->first;
+    if (builds_on(it->second.object, from)) from = it->first;
   }
   return from;
 }
@@ -63,7 +69,7 @@ void TrackReceiver::State::add_steps(Track& track, const TrackWay& way,
   }
   for (auto it = track.updates.upper_bound(at); it != track.updates.end() && it->first <= way.end;
        ++it) {
-    if (it->second.object.previous != at) continue;
+    if (!builds_on(it->second.object, at)) continue;
     at = it->first;
     steps.push_back({&track, &it->second});
   }
@@ -111,7 +117,11 @@ Status TrackReceiver::State::advance(std::vector<Message>& out) {
     for (std::size_t t = 0; t < ways.size(); ++t) add_steps(unit.tracks[t], ways[t], steps);
     forward.emplace_back(&unit, std::move(ways));
   }
-  if (!welcomed) return Status::ok;
+  const bool waits = !all && !begun && ticks - ticks_before < kFirstTicks;
+  if (!welcomed || waits) {
+    new_tick = has_news = false;
+    return Status::ok;
+  }
   std::stable_sort(steps.begin(), steps.end(), [](const TrackStep& a, const TrackStep& b) {
     return std::pair(a.waiting->object.update, a.track->stream) <
            std::pair(b.waiting->object.update, b.track->stream);
@@ -159,6 +169,7 @@ Status TrackReceiver::State::advance(std::vector<Message>& out) {
     }
   }
   new_tick = has_news = false;
+  begun = true;
   return Status::ok;
 }
 
