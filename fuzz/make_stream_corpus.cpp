@@ -4,6 +4,8 @@
 
 #include <gicodec/irradiance_vectors.h>
 #include <gicodec/streaming.h>
+#include <gicodec/track_publisher.h>
+#include <gicodec/track_receiver.h>
 
 #include <iterator>
 #include <map>
@@ -128,12 +130,50 @@ void add_changing_volumes(Corpus& corpus) {
   }
 }
 
+/// What a publisher says of a volume that changes a little, or of one that comes.
+void add_tracks(Corpus& corpus) {
+  constexpr Grid kGrid{6, 2, 3};
+  const std::vector<NamedTexture> probes{{"color", probe_texture(Format::R16_SFLOAT, kGrid, 2)},
+                                         {"vis", probe_texture(Format::R16G16_SFLOAT, kGrid, 2)}};
+  const std::pair<const char*, VolumeDesc> cases[] = {{"native", *probe_volume(probes)},
+                                                      {"raw", *irradiance_vector_volume(kGrid)}};
+  for (const auto& [backend, volume] : cases) {
+    auto server =
+        *Server::create({.backend = backend, .region = {2, 2, 3}, .epoch = 7, .proofs = true});
+    (void)server.add_volume("v", volume, {kGrid});
+    auto publisher = *TrackPublisher::create(server, {.snapshot_seconds = 3});
+    Bytes said;
+    for (int update = 1; update <= 9; ++update) {
+      for (std::uint8_t t = 0; t < volume.groups[0].textures.size(); ++t) {
+        Bytes texels(texture_bytes(volume.groups[0].textures[t].desc), std::byte{1});
+        texels[static_cast<std::size_t>(update * 37) % texels.size()] = std::byte{9};
+        (void)server.publish(0, t, ConstTextureView{texels});
+      }
+      if (update == 6) (void)server.add_volume("w", volume, {kGrid});
+      (void)publisher.update(update, update);
+      for (const TrackMessage& message : publisher.messages()) {
+        corpus.add("message", Bytes(message.bytes.begin(), message.bytes.end()));
+        put_part(message.bytes, 0, said);
+      }
+    }
+    corpus.add("tracks", said);
+    // Backwards.
+    Bytes reverse;
+    for (int update = 0; update < 3; ++update) {
+      for (auto it = publisher.messages().rbegin(); it != publisher.messages().rend(); ++it)
+        put_part(it->bytes, 0, reverse);
+    }
+    corpus.add("tracks", reverse);
+  }
+}
+
 }  // namespace
 
 void add_streams(Corpus& corpus, const std::filesystem::path& folder) {
   add_sessions(corpus, folder);
   add_clients(corpus);
   add_changing_volumes(corpus);
+  add_tracks(corpus);
 }
 
 }  // namespace gicodec::fuzz

@@ -117,6 +117,8 @@ class WatchedClient {
   }
   [[nodiscard]] const ClientFrame& frame() const { return client_->frame(); }
   [[nodiscard]] bool consistent() const { return client_->consistent(); }
+  /// Since the last call.
+  [[nodiscard]] std::vector<Message> replies() { return std::exchange(said_, {}); }
 
  private:
   /// Of a state that is listed in a Hello or Resync, and of what a list that grew leaves behind.
@@ -201,6 +203,7 @@ class WatchedClient {
   /// Takes its replies; `update` is what it was just told, if so.
   void answer(const UpdateMessage* update) {
     spend(0, [&] { replies_ = client_->take_messages(); });
+    said_.insert(said_.end(), replies_.begin(), replies_.end());
     for (const Message& reply : replies_) {
       const auto read = read_message(reply);
       check(read.ok(), "its replies are sound");
@@ -216,7 +219,7 @@ class WatchedClient {
 
   std::optional<Client> client_;
   Message hello_;
-  std::vector<Message> replies_;
+  std::vector<Message> replies_, said_;
   ClientView view_;
   ClientOptions options_;
   std::uint64_t session_ = 0;     ///< what this session may hold

@@ -6,6 +6,7 @@
 #include <gicodec/backend.h>
 #include <gicodec/packet.h>
 #include <gicodec/settings.h>
+#include <gicodec/texture.h>
 
 #include <compare>
 #include <cstdint>
@@ -63,6 +64,12 @@ struct StreamId {
 
   static constexpr std::uint32_t kWholeVolume = UINT32_MAX;
   friend constexpr auto operator<=>(const StreamId&, const StreamId&) = default;
+};
+
+/// What identifies a track to people and in subjects.
+struct TrackName {
+  std::string_view volume, texture;  ///< owned by what returned the name
+  Grid place;                        ///< of its region among those of the texture
 };
 
 struct OutgoingPacket {

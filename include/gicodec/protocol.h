@@ -183,7 +183,7 @@ struct UpdateMessage {
   std::vector<Proof> proofs = {};    ///< hashes for the client to check; usually none
 };
 
-// Tracks: shared streams for receivers that the publisher does not know, see tracks.h.
+// Tracks: shared streams for receivers that the publisher does not know (track_publisher.h).
 
 /// The last objects of the tracks of consecutive regions of a texture.
 struct TrackRun {

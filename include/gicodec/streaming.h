@@ -7,4 +7,6 @@
 #include <gicodec/protocol.h>
 #include <gicodec/recorder.h>
 #include <gicodec/server.h>
+#include <gicodec/track_publisher.h>
+#include <gicodec/track_receiver.h>
 #include <gicodec/upload.h>

@@ -5,7 +5,8 @@
 #include "session/any_volume.h"
 
 #include <gicodec/client.h>
-#include <gicodec/tracks.h>
+#include <gicodec/track_publisher.h>
+#include <gicodec/track_receiver.h>
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

@@ -3,6 +3,7 @@
 #include "dump/cure.h"
 #include "dump/error.h"
 #include "dump/text.h"
+#include "file_forms.h"
 #include "file_names.h"
 #include "volume_words.h"
 

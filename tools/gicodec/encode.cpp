@@ -151,9 +151,10 @@ std::vector<Lane> make_lanes(const EncodeOptions& options, const std::vector<Seq
           "texture {}: no encoder of --hevc-encoder {} is available; {} is used instead",
           stored.name, options.backend.hevc_encoder, stored.encoder));
     }
+    const std::string& name = stored.name;
     RegionEncoder encoder(stored.info.desc, region, [&](const TextureDesc& desc) {
-      return make_encoder(options.backend, desc, stored.name,
-                          static_cast<std::uint8_t>(lanes.size()), max_error, options.threads);
+      return make_encoder(options.backend, desc, name, static_cast<std::uint8_t>(lanes.size()),
+                          max_error, options.threads);
     });
     lanes.push_back({*sequence, std::move(stored), std::move(encoder), 0, {}, {}});
     if (leaves_out) set_inactive(lanes.back(), inactive, options.inactive);

@@ -2,6 +2,8 @@
 
 #include "dump/block_place.h"
 
+#include <gicodec/delivery.h>
+
 #include <algorithm>
 #include <utility>
 

@@ -1,8 +1,9 @@
 #include "modules/nats.h"
 
+#include "modules/nats_inbound.h"
+
 #include <nats/nats.h>
 
-#include <charconv>
 #include <chrono>
 #include <condition_variable>
 #include <cstring>
@@ -19,7 +20,6 @@ namespace {
 constexpr std::int64_t kReconnectWait = 100;  // milliseconds
 constexpr std::int64_t kPing = 1000;          // milliseconds; two without an answer are a loss
 constexpr std::int64_t kLastFlush = 500;      // milliseconds
-constexpr std::size_t kMessage = 256;         ///< memory of a message besides its data
 
 template <auto function>
 struct Destroy {
@@ -32,74 +32,6 @@ using Options = std::unique_ptr<natsOptions, Destroy<natsOptions_Destroy>>;
 using Connection = std::unique_ptr<natsConnection, Destroy<natsConnection_Destroy>>;
 using Subscription = std::unique_ptr<natsSubscription, Destroy<natsSubscription_Destroy>>;
 using Received = std::unique_ptr<natsMsg, Destroy<natsMsg_Destroy>>;
-
-std::size_t size_of(const NatsMessage& message) noexcept {
-  std::size_t bytes = kMessage + message.data.size() + message.subject.size();
-  for (const auto& [key, value] : message.headers) bytes += key.size() + value.size();
-  return bytes;
-}
-
-std::string header(natsMsg* message, const char* key) {
-  const char* value = nullptr;
-  return natsMsgHeader_Get(message, key, &value) == NATS_OK && value != nullptr ? value : "";
-}
-
-/// The messages that wait for next(). Outlives the connection while libnats delivers.
-class Inbound {
- public:
-  explicit Inbound(std::size_t limit) : limit_(limit) {}
-
-  void add(std::uint64_t subscription, natsMsg* received) noexcept;
-  bool take(NatsMessage& message, unsigned milliseconds);
-  [[nodiscard]] std::uint64_t dropped() {
-    const std::lock_guard lock(mutex_);
-    return dropped_;
-  }
-
- private:
-  std::mutex mutex_;
-  std::condition_variable came_;
-  std::deque<NatsMessage> messages_;
-  std::size_t bytes_ = 0, limit_;
-  std::uint64_t dropped_ = 0;
-};
-
-void Inbound::add(std::uint64_t subscription, natsMsg* received) noexcept {
-  try {
-    NatsMessage message;
-    message.subscription = subscription;
-    message.subject = natsMsg_GetSubject(received);
-    if (const char* reply = natsMsg_GetReply(received)) message.reply = reply;
-    message.status = header(received, "Status");
-    const std::string sequence = header(received, "Nats-Sequence");
-    std::from_chars(sequence.data(), sequence.data() + sequence.size(), message.sequence);
-    const auto* const data = reinterpret_cast<const std::byte*>(natsMsg_GetData(received));
-    message.data.assign(data, data + natsMsg_GetDataLength(received));
-    const std::size_t bytes = size_of(message);
-    const std::lock_guard lock(mutex_);
-    if (bytes_ + bytes > limit_) {
-      ++dropped_;
-      return;
-    }
-    messages_.push_back(std::move(message));
-    bytes_ += bytes;
-    came_.notify_one();
-  } catch (const std::bad_alloc&) {
-    const std::lock_guard lock(mutex_);
-    ++dropped_;
-  }
-}
-
-bool Inbound::take(NatsMessage& message, unsigned milliseconds) {
-  std::unique_lock lock(mutex_);
-  const bool came = came_.wait_for(lock, std::chrono::milliseconds(milliseconds),
-                                   [this] { return !messages_.empty(); });
-  if (!came) return false;
-  message = std::move(messages_.front());
-  messages_.pop_front();
-  bytes_ -= size_of(message);
-  return true;
-}
 
 /// What libnats gives back with each message of a subscription.
 struct Topic {
@@ -174,7 +106,7 @@ class LibNats final : public NatsConnection {
 };
 
 bool LibNats::add(Task&& task) {
-  const std::size_t bytes = size_of(task.message);
+  const std::size_t bytes = memory_of(task.message);
   const std::lock_guard lock(mutex_);
   const bool full = unsent_bytes_ > 0 && unsent_bytes_ + bytes > options_.max_unsent;
   if (task.type == Task::Type::publish && full) return false;
@@ -378,7 +310,7 @@ void LibNats::run() {
     if (tasks_.empty()) break;
     const Task task = std::move(tasks_.front());
     tasks_.pop_front();
-    unsent_bytes_ -= size_of(task.message);
+    unsent_bytes_ -= memory_of(task.message);
     lock.unlock();
     try {
       perform(task);

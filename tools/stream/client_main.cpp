@@ -168,7 +168,7 @@ Loaded load(const ClientFlags& o, const ddgi::RenderOptions& render) {
 
 /// Reads where the server is, or the servers of NATS.
 void take_server(ClientFlags& o) {
-  const NatsFlags& nats = o.viewer.link.net.nats;
+  NatsFlags& nats = o.viewer.link.net.nats;
   check_nats_flags(nats);
   if (o.connect.empty() == nats.urls.empty())
     fail(Exit::usage, "{}",
@@ -181,6 +181,7 @@ void take_server(ClientFlags& o) {
     return;
   }
   static_cast<void>(nats_urls(nats.urls, "--nats"));
+  if (!nats.password_file.empty()) nats.password = tools::read_token({"", nats.password_file}).text;
   const Budget& budget = o.viewer.client.budget;
   if (budget.blocks > 0 || budget.bytes > 0)
     fail(Exit::usage,

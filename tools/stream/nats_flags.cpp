@@ -24,6 +24,9 @@ void add_nats_flags(tools::Command& app, NatsFlags& flags, const std::string& wh
 }
 
 void check_nats_flags(const NatsFlags& flags) {
+  if (flags.user.empty() != flags.password_file.empty())
+    tools::fail(tools::Exit::usage,
+                "--nats-user and --nats-password-file belong together; name both");
   if (!flags.urls.empty()) return;
   if (!flags.user.empty() || !flags.password_file.empty() || !flags.ca.empty() ||
       flags.prefix != NatsFlags{}.prefix)

@@ -140,6 +140,11 @@ std::optional<Turn> NatsPublisher::claim(bool wait) {
                                  "asking who publishes");
     if (last.status.empty() && !last.data.empty()) {
       turn.epoch = claimed(last) + 1;
+      if (turn.epoch == 0)
+        fail(Exit::io,
+             "--nats {}: somebody has claimed the last epoch there is; delete the streams {} and "
+             "{}, and start viewers anew",
+             options_.nats.urls, subjects_.kept_stream(), subjects_.update_stream());
       sequence = last.sequence;
     }
     const NatsMessage tick = ask(get_last(subjects_.kept_stream(), subjects_.tick(), reply()),

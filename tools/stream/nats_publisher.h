@@ -3,7 +3,7 @@
 
 #include "nats_tracks.h"
 
-#include <gicodec/tracks.h>
+#include <gicodec/track_publisher.h>
 
 #include <cstdint>
 #include <deque>

@@ -5,7 +5,7 @@
 #include "nats_tracks.h"
 #include "transport.h"
 
-#include <gicodec/tracks.h>
+#include <gicodec/track_receiver.h>
 
 #include <cstdint>
 #include <deque>

@@ -1,6 +1,5 @@
 #include "nats_tracks.h"
 
-#include "common/token.h"
 #include "dump/error.h"
 #include "dump/text.h"
 #include "dump/url.h"
@@ -32,7 +31,7 @@ NatsMessage request(std::string subject, const std::string& reply, const json& b
   message.subject = std::move(subject);
   message.reply = reply;
   if (body.is_null()) return message;
-  const std::string text = body.dump();
+  const std::string text = nlohmann::to_string(body);
   const auto bytes = std::as_bytes(std::span(text));
   message.data.assign(bytes.begin(), bytes.end());
   return message;
@@ -89,10 +88,8 @@ std::unique_ptr<tools::NatsConnection> open_nats(const NatsFlags& flags, const c
   options.user = flags.user;
   options.ca = flags.ca;
   options.timeout = timeout;
-  if (flags.user.empty() != flags.password_file.empty())
-    fail(Exit::usage, "--nats-user and --nats-password-file belong together; name both");
-  if (!flags.password_file.empty()) {
-    options.password = tools::read_token({"", flags.password_file}).text;
+  options.password = flags.password;
+  if (!flags.password.empty()) {
     for (const std::string& url : options.urls) {
       if (url.starts_with("nats://") && flags.ca.empty() &&
           !tools::is_loopback(tools::host_of(url)))

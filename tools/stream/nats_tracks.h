@@ -5,7 +5,7 @@
 #include "modules/nats.h"
 #include "transport.h"
 
-#include <gicodec/tracks.h>
+#include <gicodec/delivery.h>
 
 #include <cstdint>
 #include <memory>

@@ -39,6 +39,9 @@ std::unique_ptr<NatsPublisher> begin_publishing(ServerFlags& o, Feed& feed) {
     if (o.standby) tools::fail(tools::Exit::usage, "--standby is for --nats");
     return nullptr;
   }
+  NatsFlags& nats_flags = o.nats.nats;
+  if (!nats_flags.password_file.empty())
+    nats_flags.password = tools::read_token({"", nats_flags.password_file}).text;
   o.nats.streams.keep_bytes = std::uint64_t{o.nats_max_mb} << 20;
   o.nats.streams.keep_seconds = kept_seconds(o.service.tracks);
   auto nats = std::make_unique<NatsPublisher>(o.nats);

@@ -5,7 +5,7 @@
 #include "play_feed.h"
 
 #include <gicodec/server.h>
-#include <gicodec/tracks.h>
+#include <gicodec/track_publisher.h>
 
 #include <nlohmann/json_fwd.hpp>
 

@@ -12,7 +12,7 @@
 #include "views.h"
 
 #include <gicodec/server.h>
-#include <gicodec/tracks.h>
+#include <gicodec/track_publisher.h>
 
 #include <fmt/core.h>
 

@@ -84,7 +84,8 @@ struct NatsFlags {
   std::string urls;  ///< "nats://host:port", several with commas between; empty: NATS is not used
   std::string prefix = "gicodec";
   std::string user, password_file;
-  std::string ca;  ///< file of authorities; empty: the system's
+  std::string password;  ///< of that file
+  std::string ca;        ///< file of authorities; empty: the system's
 };
 
 struct NetOptions {

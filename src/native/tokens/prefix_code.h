@@ -37,7 +37,7 @@ class CodeWriter {
   std::uint8_t* write(std::span<const std::uint8_t> tokens, std::uint8_t* out) const noexcept;
 
  private:
-  std::array<std::uint32_t, kMaxTokens * kMaxTokens> pair_;
+  std::array<std::uint32_t, std::size_t{kMaxTokens} * kMaxTokens> pair_;
   std::array<std::uint16_t, kMaxTokens> code_;
   CodeLengths lengths_;
 };

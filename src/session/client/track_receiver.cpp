@@ -1,5 +1,5 @@
 // What a TrackReceiver takes from the publisher and the client, and asks the transport for.
-#include <gicodec/tracks.h>
+#include <gicodec/track_receiver.h>
 
 #include "base/guard.h"
 #include "session/client/track_receiver_state.h"

@@ -2,7 +2,7 @@
 // track_updates.cpp makes updates of it.
 #pragma once
 
-#include <gicodec/tracks.h>
+#include <gicodec/track_receiver.h>
 
 #include "session/client/track_table.h"
 

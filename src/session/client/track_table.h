@@ -2,7 +2,7 @@
 #pragma once
 
 #include <gicodec/protocol.h>
-#include <gicodec/tracks.h>
+#include <gicodec/track_receiver.h>
 
 #include <cstdint>
 #include <map>

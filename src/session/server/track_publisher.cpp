@@ -1,6 +1,6 @@
 // Publishes tracks: one client of the distributor gets the updates of all tracks, and now and then
 // a second one joins to get their snapshots.
-#include <gicodec/tracks.h>
+#include <gicodec/track_publisher.h>
 
 #include "base/guard.h"
 #include "base/memory.h"
