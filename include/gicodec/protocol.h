@@ -184,7 +184,6 @@ struct UpdateMessage {
 };
 
 // Tracks: shared streams for receivers that the publisher does not know (track_publisher.h).
-
 /// The last objects of the tracks of consecutive regions of a texture.
 struct TrackRun {
   StreamId first = {};       ///< of shared delivery

@@ -66,9 +66,9 @@ std::vector<std::string> nats_urls(const std::string& urls, const char* flag) {
     const bool known = url.starts_with("nats://") || url.starts_with("tls://");
     if (!known || url.size() <= url.find("//") + 2)
       fail(Exit::usage,
-           "{}: expected nats://HOST:PORT or tls://HOST:PORT, several with commas "
-           "between, not \"{}\"",
-           flag, tools::shown_url(url));
+           "{}: expected nats://HOST:PORT or tls://HOST:PORT, several with commas between, not "
+           "\"{}\"",
+           flag, known ? url : tools::printable(url.substr(url.rfind('@') + 1)));
     if (url.find('@') != std::string::npos)
       fail(Exit::usage,
            "{}: {}: other users of this machine could read a password there; use "
