@@ -307,7 +307,11 @@ void NatsPublisher::repeat(TrackPublisher& tracks) {
     unanswered_.pop_front();
     lost = true;
   }
-  if (lost) tracks.repeat_snapshots();
+  // Not more often: a server that stores nothing would cause snapshots with every update.
+  if (lost && at - gave_up_ > kGiveUp) {
+    gave_up_ = at;
+    tracks.repeat_snapshots();
+  }
   for (Unanswered& one : unanswered_) {
     if (at - one.last < kRepeat) continue;
     one.last = at;

@@ -77,6 +77,7 @@ class NatsPublisher {
   std::uint64_t epoch_ = 0, connections_ = 0;
   std::deque<Unanswered> unanswered_;
   std::size_t unanswered_bytes_ = 0;
+  double gave_up_ = 0;  ///< when messages were last given up
   bool replaced_ = false;
   std::set<std::string> remarked_;  ///< faults that are not over
   std::string remarks_;

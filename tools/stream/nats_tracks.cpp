@@ -44,7 +44,7 @@ json parsed(const NatsMessage& message) {
 }
 
 NatsMessage make_stream(const std::string& name, const std::vector<std::string>& subjects,
-                        const StreamSettings& settings, json more, bool exists,
+                        const StreamSettings& settings, const json& more, bool exists,
                         const std::string& reply) {
   json config{
       {"name", name},          {"subjects", subjects},
