@@ -1,5 +1,5 @@
 // Simulated viewers of script/bench-nats: connections that subscribe to everything, count and hash
-// what comes, and print it once a second and at the end. nats_viewers PORT PREFIX COUNT SECONDS
+// what comes, and print it at the end. nats_viewers PORT PREFIX COUNT SECONDS
 #include <xxhash.h>
 
 #include <arpa/inet.h>

@@ -289,11 +289,17 @@ void fields(Archive& archive, M& m) {
   track_runs(archive, m.snapshots, m.update);
 }
 
-template <typename Archive, FieldsOf<TrackObject> M>
-void fields(Archive& archive, M& m) {
+/// How objects and ticks begin.
+template <typename Archive>
+void track_head(Archive& archive, auto& m) {
   archive.fixed(m.epoch);
   archive.number(m.generation);
   archive.number(m.update);
+}
+
+template <typename Archive, FieldsOf<TrackObject> M>
+void fields(Archive& archive, M& m) {
+  track_head(archive, m);
   archive.number(m.previous);
   archive.check(m.previous < m.update);
   archive.number(m.number);
@@ -306,9 +312,7 @@ void fields(Archive& archive, M& m) {
 
 template <typename Archive, FieldsOf<TrackTick> M>
 void fields(Archive& archive, M& m) {
-  archive.fixed(m.epoch);
-  archive.number(m.generation);
-  archive.number(m.update);
+  track_head(archive, m);
   archive.real(m.time);
   scrolls(archive, m.scrolls);
   archive.number(m.round);

@@ -75,8 +75,7 @@ void NatsPublisher::wait_for_servers() {
   }
 }
 
-/// The answer to a request, or nothing in time. Other messages are dropped, claims and ticks of
-/// others taken note of.
+/// The answer to a request, or nothing in time. Other messages are dropped.
 std::optional<NatsMessage> NatsPublisher::answer_to(const NatsMessage& request, double seconds) {
   NatsMessage sent = request;
   static_cast<void>(connection_->publish(std::move(sent)));
@@ -128,8 +127,7 @@ void NatsPublisher::make_streams() {
   make(make_update_stream);
 }
 
-/// Takes the next epoch, unless somebody else does. nullopt: somebody did, or the time of the last
-/// update is not known yet.
+/// Takes the next epoch. nullopt: another publisher did, or without `wait` it could not be stored.
 std::optional<Turn> NatsPublisher::claim(bool wait) {
   const double end = now() + options_.patience;
   while (!tools::interrupted()) {
@@ -223,6 +221,10 @@ void NatsPublisher::publish(TrackPublisher& tracks) {
       update = tick->update;
     }
   }
+  const decltype(NatsMessage::headers) headers{{"Gi-Epoch", fmt::format("{}", epoch_)},
+                                               {"Gi-Update", fmt::format("{}", update)},
+                                               {"Gi-Time", time},
+                                               {"Gi-Scroll", scroll}};
   for (const TrackMessage& message : tracks.messages()) {
     NatsMessage sent;
     const auto name = tracks.name(message.stream);
@@ -238,10 +240,7 @@ void NatsPublisher::publish(TrackPublisher& tracks) {
     }
     if (sent.subject.empty()) continue;
     sent.data = message.bytes;
-    sent.headers = {{"Gi-Epoch", fmt::format("{}", epoch_)},
-                    {"Gi-Update", fmt::format("{}", update)},
-                    {"Gi-Time", time},
-                    {"Gi-Scroll", scroll}};
+    sent.headers = headers;
     // Headers count, too.
     constexpr std::size_t kHeaders = 4096;
     if (state.max_payload > 0 && sent.data.size() + kHeaders > state.max_payload) {

@@ -34,7 +34,7 @@ class NatsPublisher {
  public:
   explicit NatsPublisher(const NatsPublisherOptions& options);
 
-  /// Becomes the publisher at once; whoever published before ends.
+  /// Becomes the publisher at once; the one before ends.
   [[nodiscard]] Turn begin();
   /// Waits until no publisher is there any more, and takes its place. `follow` is called with the
   /// time of each update of the other, nullopt at first. nullopt: the program was interrupted.

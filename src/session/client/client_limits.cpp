@@ -38,10 +38,7 @@ void add(Memory& memory, const TextureDesc& desc, const Grid& region, Delivery d
 
 Result<ClientVolume> volume_of(const DescribedVolume& said, const ClientOptions& options,
                                unsigned frames, Memory& memory) {
-  std::vector<TextureLayout> layouts;
-  for (const DescribedTexture& texture : said.textures)
-    layouts.push_back({texture.name, texture.layout});
-  auto desc = read_volume_desc(said.kind, said.description, layouts, options.kinds);
+  auto desc = volume_desc_of(said, options.kinds);
   if (!desc) return desc.status();
   ClientVolume volume{said.id, 0, said.name, *std::move(desc), said.geometry, said.region, {}};
   for (const NamedTexture* texture : textures_of(volume.desc)) {
@@ -56,6 +53,13 @@ Result<ClientVolume> volume_of(const DescribedVolume& said, const ClientOptions&
 }
 
 }  // namespace
+
+Result<VolumeDesc> volume_desc_of(const DescribedVolume& said, std::span<const Kind* const> kinds) {
+  std::vector<TextureLayout> layouts;
+  for (const DescribedTexture& texture : said.textures)
+    layouts.push_back({texture.name, texture.layout});
+  return read_volume_desc(said.kind, said.description, layouts, kinds);
+}
 
 std::uint64_t client_memory(const std::vector<ClientVolume>& volumes, Delivery delivery,
                             unsigned frames, unsigned threads) noexcept {

@@ -22,6 +22,10 @@ namespace gicodec {
                                                            const ClientOptions& options,
                                                            unsigned frames);
 
+/// What a publisher says of a volume, read by its kind: unknown_kind, corrupt.
+[[nodiscard]] Result<VolumeDesc> volume_desc_of(const DescribedVolume& said,
+                                                std::span<const Kind* const> kinds);
+
 /// The texture of a stream's decoder: that of the volume, or a region of it.
 [[nodiscard]] TextureDesc stream_desc(const ClientVolume& volume, StreamId id) noexcept;
 

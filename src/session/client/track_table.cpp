@@ -1,6 +1,7 @@
 #include "session/client/track_table.h"
 
 #include "bitstream/description.h"
+#include "session/client/client_limits.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,18 +12,13 @@ namespace {
 /// A unit is dropped at this multiple of the reach, so that none comes and goes at its edge.
 constexpr float kFar = 1.25F;
 
-/// The least distance along an axis between `eye` and the cells where blocks first..first+count-1
-/// stand.
-float distance_along(const VolumeGeometry& geometry, std::size_t axis, std::uint32_t sides,
+/// The least distance along an axis between `eye` and blocks first..first+count-1 of that axis,
+/// which are `stride` blocks apart.
+float distance_along(const VolumeGeometry& geometry, std::size_t axis, std::uint32_t stride,
                      std::uint32_t first, std::uint32_t count, float eye) noexcept {
   float least = INFINITY;
-  const auto side = static_cast<std::int64_t>(sides);
-  const std::int64_t scroll = geometry.scroll[axis];
-  for (std::uint32_t block = first; block < first + count; ++block) {
-    const std::int64_t cell = scroll + ((block - scroll) % side + side) % side;
-    const float place = geometry.origin[axis] + static_cast<float>(cell) * geometry.spacing[axis];
-    least = std::min(least, std::fabs(place - eye));
-  }
+  for (std::uint32_t i = first; i < first + count; ++i)
+    least = std::min(least, std::fabs(block_position(geometry, i * stride)[axis] - eye));
   return least;
 }
 
@@ -33,10 +29,7 @@ Result<TrackTable> TrackTable::create(TrackList list, const TrackReceiverOptions
   table.list_ = std::move(list);
   for (std::uint16_t v = 0; v < table.list_.volumes.size(); ++v) {
     const DescribedVolume& said = table.list_.volumes[v];
-    std::vector<TextureLayout> layouts;
-    for (const DescribedTexture& texture : said.textures)
-      layouts.push_back({texture.name, texture.layout});
-    auto desc = read_volume_desc(said.kind, said.description, layouts, options.kinds);
+    auto desc = volume_desc_of(said, options.kinds);
     if (!desc) return desc.status();
     table.volumes_.push_back(*std::move(desc));
     const Status added = table.add_volume(v, options.max_tracks);
@@ -123,20 +116,14 @@ std::uint32_t TrackTable::blocks(std::size_t volume, std::uint8_t group) const n
   return block_count(volumes_[volume].groups[group].textures.front().desc);
 }
 
-const TextureDesc* TrackTable::texture(std::size_t volume, std::uint8_t texture) const noexcept {
-  for (const TextureGroup& group : volumes_[volume].groups) {
-    if (texture < group.textures.size()) return &group.textures[texture].desc;
-    texture = static_cast<std::uint8_t>(texture - group.textures.size());
-  }
-  return nullptr;
-}
-
 std::optional<TrackName> TrackTable::name(StreamId stream) const noexcept {
   const auto v = volume(stream.volume);
   if (!v || places_.count(stream) == 0) return std::nullopt;
   const DescribedVolume& said = list_.volumes[*v];
-  return TrackName{said.name, said.textures[stream.texture].name,
-                   regions_of(*texture(*v, stream.texture), said.region).place_of(stream.region)};
+  const auto [group, first] = group_of(volumes_[*v], stream.texture);
+  const NamedTexture& texture = group->textures[stream.texture - first];
+  return TrackName{said.name, texture.name,
+                   regions_of(texture.desc, said.region).place_of(stream.region)};
 }
 
 void TrackTable::scroll(std::span<const Scroll> scrolls) noexcept {
@@ -151,9 +138,9 @@ float TrackTable::distance(const TrackUnit& unit, const Position& eye) const noe
   if (unit.whole || desc.space != Space::grid || !(desc.grid == geometry.grid)) return 0;
   const RegionGrid cut = regions_of(desc, list_.volumes[unit.volume].region);
   const Grid first = cut.first_of(unit.region), size = cut.grid_of(unit.region);
-  const float x = distance_along(geometry, 0, desc.grid.x, first.x, size.x, eye[0]);
-  const float y = distance_along(geometry, 1, desc.grid.y, first.y, size.y, eye[1]);
-  const float z = distance_along(geometry, 2, desc.grid.z, first.z, size.z, eye[2]);
+  const float x = distance_along(geometry, 0, 1, first.x, size.x, eye[0]);
+  const float y = distance_along(geometry, 1, desc.grid.x, first.y, size.y, eye[1]);
+  const float z = distance_along(geometry, 2, desc.grid.x * desc.grid.y, first.z, size.z, eye[2]);
   return std::hypot(x, y, z);
 }
 

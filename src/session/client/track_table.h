@@ -80,7 +80,6 @@ class TrackTable {
   void scroll(std::span<const Scroll> scrolls) noexcept;
 
  private:
-  [[nodiscard]] const TextureDesc* texture(std::size_t volume, std::uint8_t texture) const noexcept;
   [[nodiscard]] bool has_tracks_of(const TrackList& list) const noexcept;
   void take_snapshots() noexcept;
   Status add_volume(std::uint16_t volume, std::uint32_t max_tracks);
