@@ -9,7 +9,7 @@ import dataclasses
 import pathlib
 import re
 
-HEADERS = ("base", "description", "encoder", "decoder", "container", "client", "server")
+HEADERS = ("base", "description", "encoder", "decoder", "container", "client", "server", "tracks")
 FOLDER = pathlib.Path(__file__).resolve().parent.parent / "include" / "gicodec" / "c"
 
 

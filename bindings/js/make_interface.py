@@ -31,7 +31,7 @@ DECODER = rf"{DESCRIPTION}|gicodec_(player_(open|destroy|container|select|select
     r"volume_decoder_(create|decode|read|changed)|packet_peek|backend_name)"
 MODULES = {
     "decoder": DECODER,
-    "client": rf"{DESCRIPTION}|gicodec_(client_(?!cancel|destroy)\w+|reason_text|volume_desc_json)",
+    "client": rf"{DESCRIPTION}|gicodec_(client_(?!cancel|destroy)\w+|track_receiver_(?!destroy)\w+|reason_text|volume_desc_json)",
     "encoder": rf"{DESCRIPTION}|gicodec_(ddgi_\w+|map_texture|format_(count|at)|layout_\w+|"
     r"volume_desc_(from_layout|json)|encoder_(?!destroy)\w+|volume_encoder_(?!destroy|read|set_active)\w+|"
     r"container_(create|add_volume|set_\w+|add_metadata)|writer_(?!destroy)\w+)",

@@ -84,6 +84,12 @@ template <typename Number>
   return out == given ? Status::ok : unknown;
 }
 
+/// Sets an option unless 0, which is its default, is given.
+template <typename Field, typename Value>
+void set(Field& field, Value value) noexcept {
+  if (value != 0) field = value;
+}
+
 [[nodiscard]] constexpr gicodec_status number(Status status) noexcept {
   return static_cast<gicodec_status>(status);
 }

@@ -1,11 +1,11 @@
 // The streaming server.
+#include "c/server.h"
+
 #include "c/container.h"
 #include "c/volume_desc.h"
 
 #include <gicodec/c/server.h>
-#include <gicodec/server.h>
 
-#include <map>
 #include <optional>
 #include <utility>
 
@@ -13,32 +13,6 @@ using namespace gicodec;
 
 namespace gicodec::c {
 namespace {
-
-/// The messages that a connection has not taken, and the last one that it took, in one piece.
-struct Outbox {
-  std::vector<OutgoingMessage> messages;
-  std::size_t taken = 0;
-  Message last;
-};
-
-}  // namespace
-}  // namespace gicodec::c
-
-struct gicodec_server : c::Handle {
-  std::optional<Server> server;
-  std::map<ConnectionId, c::Outbox> outboxes;
-  std::vector<ServerEvent> events;
-  std::size_t told = 0;  ///< of these
-};
-
-namespace gicodec::c {
-namespace {
-
-/// Sets a limit unless 0 is given.
-template <typename Field, typename Value>
-void set(Field& field, Value value) noexcept {
-  if (value != 0) field = value;
-}
 
 [[nodiscard]] Status take_options(const gicodec_server_options& given, const Host& host,
                                   ServerOptions& out) {

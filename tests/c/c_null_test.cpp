@@ -379,5 +379,54 @@ TEST(CNull, NullInPlaceOfAClientOrServer) {
   gicodec_server_destroy(server);
 }
 
+TEST(CNull, NullInPlaceOfWhatTracksNeed) {
+  std::uint32_t number = 0;
+  std::size_t size = 0;
+  const gicodec_track track{0, 0, 0};
+  auto name = sized<gicodec_track_name>();
+  auto message = sized<gicodec_track_message>();
+  const gicodec_track* tracks = nullptr;
+  const gicodec_track_object* objects = nullptr;
+  auto state = sized<gicodec_track_receiver_state>();
+
+  gicodec_track_publisher* publisher = nullptr;
+  EXPECT_EQ(gicodec_track_publisher_create(nullptr, nullptr, &publisher), kInvalid);
+  EXPECT_EQ(gicodec_track_publisher_update(nullptr, 0, 0), kInvalid);
+  EXPECT_EQ(gicodec_track_publisher_message(nullptr, &message), kInvalid);
+  EXPECT_EQ(gicodec_track_publisher_name(nullptr, &track, &name), kInvalid);
+  EXPECT_EQ(gicodec_track_publisher_kept_seconds(nullptr), 0);
+  EXPECT_EQ(gicodec_track_publisher_repeat_snapshots(nullptr), kInvalid);
+  gicodec_track_publisher_destroy(nullptr);
+  const auto server =
+      made<OwnedServer>([](auto out) { return gicodec_server_create(nullptr, out); });
+  EXPECT_EQ(gicodec_track_publisher_create(server.get(), nullptr, nullptr), kInvalid);
+  const auto owned = made<OwnedPublisher>(
+      [&](auto out) { return gicodec_track_publisher_create(server.get(), nullptr, out); });
+  EXPECT_EQ(gicodec_track_publisher_message(owned.get(), &message), GICODEC_END);
+  EXPECT_EQ(gicodec_track_publisher_name(owned.get(), nullptr, &name), kInvalid);
+
+  EXPECT_EQ(gicodec_track_receiver_create(nullptr, nullptr), kInvalid);
+  EXPECT_EQ(gicodec_track_receiver_receive(nullptr, &number, 4), kInvalid);
+  EXPECT_EQ(gicodec_track_receiver_take(nullptr, &number, 4), kInvalid);
+  EXPECT_EQ(gicodec_track_receiver_message(nullptr, &size), nullptr);
+  EXPECT_EQ(gicodec_track_receiver_wanted(nullptr, &tracks, &size), kInvalid);
+  EXPECT_EQ(gicodec_track_receiver_requests(nullptr, &number, &objects, &size), kInvalid);
+  EXPECT_EQ(gicodec_track_receiver_name(nullptr, &track, &name), kInvalid);
+  EXPECT_EQ(gicodec_track_receiver_get_state(nullptr, &state), kInvalid);
+  gicodec_track_receiver_destroy(nullptr);
+  const auto receiver =
+      made<OwnedReceiver>([](auto out) { return gicodec_track_receiver_create(nullptr, out); });
+  EXPECT_EQ(gicodec_track_receiver_receive(receiver.get(), nullptr, 4), kInvalid);
+  EXPECT_EQ(gicodec_track_receiver_take(receiver.get(), nullptr, 4), kInvalid);
+  EXPECT_EQ(gicodec_track_receiver_take(receiver.get(), &number, 4), kInvalid);
+  EXPECT_EQ(gicodec_track_receiver_message(receiver.get(), nullptr), nullptr);
+  EXPECT_EQ(gicodec_track_receiver_wanted(receiver.get(), nullptr, &size), kInvalid);
+  EXPECT_EQ(gicodec_track_receiver_requests(receiver.get(), nullptr, &objects, &size), kInvalid);
+  EXPECT_EQ(gicodec_track_receiver_requests(receiver.get(), &number, nullptr, &size), kInvalid);
+  EXPECT_EQ(gicodec_track_receiver_requests(receiver.get(), &number, &objects, nullptr), kInvalid);
+  EXPECT_EQ(gicodec_track_receiver_name(receiver.get(), nullptr, &name), kInvalid);
+  EXPECT_EQ(gicodec_track_receiver_get_state(receiver.get(), nullptr), kInvalid);
+}
+
 }  // namespace
 }  // namespace gicodec

@@ -39,6 +39,8 @@ using OwnedWriter = Owned<gicodec_writer, gicodec_writer_destroy>;
 using OwnedPlayer = Owned<gicodec_player, gicodec_player_destroy>;
 using OwnedClient = Owned<gicodec_client, gicodec_client_destroy>;
 using OwnedServer = Owned<gicodec_server, gicodec_server_destroy>;
+using OwnedPublisher = Owned<gicodec_track_publisher, gicodec_track_publisher_destroy>;
+using OwnedReceiver = Owned<gicodec_track_receiver, gicodec_track_receiver_destroy>;
 
 /// What create() stores, e.g. made<OwnedClient>([&](auto out) { return gicodec_client_create(…,
 /// out); }).

@@ -73,8 +73,8 @@ TEST(NatsAnswers, AreReadOrRefused) {
   EXPECT_EQ(stored.stream, "s");
   EXPECT_EQ(stored.sequence, 7U);
   EXPECT_EQ(
-      stream_answer(answer(R"({"error":{"code":400,"err_code":10058,"description":"d"}})")).error,
-      kErrorStreamExists);
+      stream_answer(answer(R"({"error":{"code":400,"err_code":10059,"description":"d"}})")).error,
+      kErrorNoStream);
   EXPECT_NE(stream_answer(answer("", "503")).error, 0);
   for (const char* text :
        {"", "{", "[]", "null", R"({"error":{}})", R"({"error":{"err_code":"x"}})"})

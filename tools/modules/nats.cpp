@@ -141,6 +141,7 @@ NatsState LibNats::state() {
 }
 
 void LibNats::fail(natsStatus status, const char* detail, bool final) {
+  if (status == NATS_OK) status = NATS_CONNECTION_DISCONNECTED;  // by the other end
   const std::lock_guard lock(mutex_);
   state_.failure = detail != nullptr && *detail != '\0' ? detail : natsStatus_GetText(status);
   state_.final = state_.final || final;

@@ -22,6 +22,7 @@ using tools::NatsMessage;
 constexpr double kRepeat = 1;      ///< seconds without an answer after which a message is repeated
 constexpr double kGiveUp = 20;     ///< seconds after which the next snapshots make up for it
 constexpr double kAskSeconds = 5;  ///< for one request at the beginning
+constexpr double kResume = 0.5;    ///< seconds between tries after a loss of the connection
 constexpr std::size_t kMaxUnanswered = std::size_t{256} << 20;  ///< bytes
 
 Message text_message(const std::string& text) {
@@ -33,6 +34,11 @@ std::uint64_t number_of(std::string_view text) {
   std::uint64_t number = 0;
   std::from_chars(text.data(), text.data() + text.size(), number);
   return number;
+}
+
+/// That of the request.
+std::uint64_t number_of_answer(const NatsMessage& message) {
+  return number_of(std::string_view(message.subject).substr(message.subject.rfind('.') + 1));
 }
 
 /// The epoch that a claim names.
@@ -94,7 +100,9 @@ NatsMessage NatsPublisher::ask(const NatsMessage& request, const char* what) {
   while (!tools::interrupted()) {
     auto answer = answer_to(request, kAskSeconds);
     // A cluster that has no leader yet does not answer, or says that there is nobody to answer.
-    if (answer && answer->status != "503") return *std::move(answer);
+    const bool answered =
+        answer && answer->status != "503" && stream_answer(*answer).error != kErrorNoLeader;
+    if (answered) return *std::move(answer);
     if (now() > end)
       fail(Exit::io,
            "--nats {}: {}: no server with JetStream answers; start nats-server with -js, and give "
@@ -108,14 +116,15 @@ NatsMessage NatsPublisher::ask(const NatsMessage& request, const char* what) {
 
 void NatsPublisher::make_streams() {
   const auto make = [this](auto request) {
-    for (const bool exists : {false, true}) {
+    // One that exists must not be counted twice against the servers' limits.
+    for (const bool exists : {true, false}) {
       const std::string reply = fmt::format("{}.{}", connection_->inbox(), ++requests_);
       const NatsMessage message = request(subjects_, options_.streams, exists, reply);
       const NatsMessage answered = ask(message, "making streams");
       if (tools::interrupted()) return;
       const StreamAnswer answer = stream_answer(answered);
       if (answer.error == 0) return;
-      if (answer.error == kErrorStreamExists && !exists) continue;
+      if (answer.error == kErrorNoStream && exists) continue;
       fail(Exit::io,
            "--nats {}: JetStream refuses to keep {}: {}; --nats-replicas and "
            "--nats-max-mb say how much it is asked for",
@@ -132,18 +141,22 @@ std::optional<Turn> NatsPublisher::claim(bool wait) {
   const double end = now() + options_.patience;
   while (!tools::interrupted()) {
     const auto reply = [this] { return fmt::format("{}.{}", connection_->inbox(), ++requests_); };
-    Turn turn;
+    Turn turn{unix_seconds(), {}};
     std::uint64_t sequence = 0;
-    const NatsMessage last = ask(get_last(subjects_.kept_stream(), subjects_.publisher(), reply()),
-                                 "asking who publishes");
-    if (last.status.empty() && !last.data.empty()) {
-      turn.epoch = claimed(last) + 1;
-      if (turn.epoch == 0)
+    const auto last =
+        answer_to(get_last(subjects_.kept_stream(), subjects_.publisher(), reply()), kAskSeconds);
+    if (!last || last->status == "503") {  // Servers that began anew have forgotten all.
+      make_streams();
+      continue;
+    }
+    if (last->status.empty() && !last->data.empty()) {
+      turn.epoch = std::max(turn.epoch, claimed(*last) + 1);
+      if (claimed(*last) == UINT64_MAX)
         fail(Exit::io,
              "--nats {}: somebody has claimed the last epoch there is; delete the streams {} and "
              "{}, and start viewers anew",
              options_.nats.urls, subjects_.kept_stream(), subjects_.update_stream());
-      sequence = last.sequence;
+      sequence = last->sequence;
     }
     const NatsMessage tick = ask(get_last(subjects_.kept_stream(), subjects_.tick(), reply()),
                                  "asking for the last update");
@@ -270,9 +283,7 @@ void NatsPublisher::publish(TrackPublisher& tracks) {
 }
 
 void NatsPublisher::answered(const NatsMessage& message) {
-  const auto dot = message.subject.rfind('.');
-  const std::uint64_t number = number_of(std::string_view(message.subject).substr(dot + 1));
-  const auto found = std::ranges::find(unanswered_, number, &Unanswered::number);
+  const auto found = std::ranges::find(unanswered_, number_of_answer(message), &Unanswered::number);
   if (found == unanswered_.end()) return;
   const StreamAnswer answer = stream_answer(message);
   if (answer.error != 0) {
@@ -288,8 +299,10 @@ void NatsPublisher::answered(const NatsMessage& message) {
   unanswered_.erase(found);
 }
 
-void NatsPublisher::handle(const NatsMessage& message) {
+void NatsPublisher::handle(const NatsMessage& message, TrackPublisher& tracks) {
   if (message.subscription == answers_) {
+    if (resume_request_ != 0 && number_of_answer(message) == resume_request_)
+      return resume(message, tracks);
     answered(message);
   } else if (message.subscription == claims_) {
     replaced_ = replaced_ || claimed(message) > epoch_;
@@ -319,40 +332,50 @@ void NatsPublisher::repeat(TrackPublisher& tracks) {
   }
 }
 
+/// After a loss of the connection somebody else may publish, and servers that began anew have
+/// forgotten all.
+void NatsPublisher::ask_to_resume(std::uint64_t connections) {
+  if (now() - asked_ < kResume) return;
+  asked_ = now();
+  resumed_connections_ = connections;
+  resume_request_ = ++requests_;
+  const std::string reply = fmt::format("{}.{}", connection_->inbox(), resume_request_);
+  for (NatsMessage request : {make_kept_stream(subjects_, options_.streams, false, ""),
+                              make_update_stream(subjects_, options_.streams, false, ""),
+                              get_last(subjects_.kept_stream(), subjects_.publisher(), reply)})
+    static_cast<void>(connection_->publish(std::move(request)));
+}
+
+/// Goes on, if this is still the last publisher. `last`: who the last one is.
+void NatsPublisher::resume(const NatsMessage& last, TrackPublisher& tracks) {
+  resume_request_ = 0;
+  if (last.status == "503") return;  // The next try finds the streams that this one has made.
+  replaced_ = replaced_ || (last.status.empty() && claimed(last) > epoch_);
+  if (replaced_) return;
+  connections_ = resumed_connections_;
+  if (last.status == "404") {
+    NatsMessage claim;
+    claim.subject = subjects_.publisher();
+    claim.data = text_message(fmt::format("{}", epoch_));
+    static_cast<void>(connection_->publish(std::move(claim)));
+  }
+  remarked_.clear();
+  remark("NATS is reached again");
+  remarked_.clear();
+  tracks.repeat_snapshots();
+}
+
 bool NatsPublisher::attend(TrackPublisher& tracks) {
   NatsMessage message;
-  while (connection_->next(message, 0)) handle(message);
+  while (connection_->next(message, 0)) handle(message, tracks);
   const tools::NatsState state = connection_->state();
   if (!state.connected) {
     remark(fmt::format("NATS is not reached: {}", nats_failure(state)));
-    return !replaced_;
+  } else if (state.connections != connections_) {
+    ask_to_resume(state.connections);
+  } else {
+    repeat(tracks);
   }
-  if (state.connections != connections_) {
-    // Somebody else may publish by now.
-    const std::string reply = fmt::format("{}.{}", connection_->inbox(), ++requests_);
-    const auto last =
-        answer_to(get_last(subjects_.kept_stream(), subjects_.publisher(), reply), kRepeat);
-    if (!last || last->status == "503") return true;  // the next call tries again
-    replaced_ = replaced_ || (last->status.empty() && claimed(*last) > epoch_);
-    if (replaced_) return false;
-    connections_ = state.connections;
-    // Servers that began anew have forgotten all.
-    static_cast<void>(
-        connection_->publish(make_kept_stream(subjects_, options_.streams, false, "")));
-    static_cast<void>(
-        connection_->publish(make_update_stream(subjects_, options_.streams, false, "")));
-    if (last->status == "404") {
-      NatsMessage claim;
-      claim.subject = subjects_.publisher();
-      claim.data = text_message(fmt::format("{}", epoch_));
-      static_cast<void>(connection_->publish(std::move(claim)));
-    }
-    remarked_.clear();
-    remark("NATS is reached again");
-    remarked_.clear();
-    tracks.repeat_snapshots();
-  }
-  repeat(tracks);
   return !replaced_;
 }
 

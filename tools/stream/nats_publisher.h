@@ -23,9 +23,10 @@ struct NatsPublisherOptions {
   double standby_after = 1;  ///< seconds without an update after which a standby takes over
 };
 
-/// The epoch of this publisher, and where it goes on.
+/// The epoch of this publisher, and where it goes on. An epoch is above the last one, and at least
+/// the time in seconds, so that it grows also where the servers have forgotten the last one.
 struct Turn {
-  std::uint64_t epoch = 1;
+  std::uint64_t epoch = 0;
   std::optional<double> time;  ///< the scene's time in the last update of the one before
 };
 
@@ -64,7 +65,9 @@ class NatsPublisher {
   void wait_for_servers();
   void make_streams();
   [[nodiscard]] std::optional<Turn> claim(bool wait);
-  void handle(const tools::NatsMessage& message);
+  void handle(const tools::NatsMessage& message, TrackPublisher& tracks);
+  void ask_to_resume(std::uint64_t connections);
+  void resume(const tools::NatsMessage& last, TrackPublisher& tracks);
   void answered(const tools::NatsMessage& message);
   void repeat(TrackPublisher& tracks);
   void remark(const std::string& text);
@@ -75,6 +78,8 @@ class NatsPublisher {
   std::uint64_t answers_ = 0, claims_ = 0, ticks_ = 0;  ///< subscriptions
   std::uint64_t requests_ = 0;                          ///< made so far
   std::uint64_t epoch_ = 0, connections_ = 0;
+  std::uint64_t resume_request_ = 0, resumed_connections_ = 0;  ///< asked after a loss
+  double asked_ = 0;
   std::deque<Unanswered> unanswered_;
   std::size_t unanswered_bytes_ = 0;
   double gave_up_ = 0;  ///< when messages were last given up

@@ -79,7 +79,7 @@ struct StreamAnswer {
   int error = 0;          ///< JetStream's number; 0: it is stored or done
   std::string text = {};  ///< of the error; not escaped
 };
-inline constexpr int kErrorStreamExists = 10058;
-inline constexpr int kErrorWrongSequence = 10071;
+inline constexpr int kErrorNoLeader = 10008;
+inline constexpr int kErrorNoStream = 10059;
 [[nodiscard]] StreamAnswer stream_answer(const tools::NatsMessage& message);
 }  // namespace gicodec::streaming

@@ -105,12 +105,7 @@ export class Client {
 
   /** The messages to send, oldest first. */
   messages() {
-    const found = [];
-    for (;;) {
-      const message = this.#instance.borrowed(Uint8Array, 'client_message', this.#handle);
-      if (message.length === 0) return found;
-      found.push(message);
-    }
+    return this.#instance.all('client_message', this.#handle);
   }
 
   /** A camera in world units, by which a server may choose blocks. */

@@ -2,6 +2,9 @@
 import * as client from './client.js';
 import {Connection} from './connection.js';
 import {Module} from './module.js';
+import {NatsBus} from './nats.js';
+import {TrackConnection} from './track_connection.js';
+import * as tracks from './track_receiver.js';
 import texts from 'gicodec:module/client';
 
 const module = new Module('client', 'gicodec_client_hello', texts);
@@ -13,6 +16,7 @@ export const {ready} = module;
 export const useModule = (source) => module.use(source);
 
 export const Client = {create: (options) => client.Client.create(module, options)};
+export const TrackReceiver = {create: (options) => tracks.TrackReceiver.create(module, options)};
 
 /** The compiled module, for gicodec/three. @internal */
 export const compiledClient = () => module.compiled();
@@ -22,4 +26,13 @@ export async function connect(url, {onUpdate, onLost, everything, timeout, signa
   signal?.throwIfAborted();
   const made = await client.Client.create(module, options);
   return new Connection(made, url, {onUpdate, onLost, everything, timeout, signal, WebSocket});
+}
+
+/** Follows a publisher of tracks over a connection of @nats-io/nats-core. */
+export async function connectNats(nats, {prefix, reach, onUpdate, onLost, signal, ...options} = {}) {
+  signal?.throwIfAborted();
+  const made = await client.Client.create(module, {...options, delivery: 'shared'});
+  const receiver = await TrackReceiver.create({reach});
+  signal?.throwIfAborted();
+  return new TrackConnection(made, receiver, (on) => new NatsBus(nats, on), {prefix, onUpdate, onLost, signal});
 }

@@ -217,6 +217,21 @@ export class Instance {
     return decoder.decode(bytes.subarray(0, bytes.indexOf(0)));
   }
 
+  /** The structs that lie from an address on. */
+  list(struct, at, count) {
+    return Array.from({length: count}, (_, i) => this.read(struct, at + i * struct.size));
+  }
+
+  /** What call(name, ...values, &size) gives until there is no more, copies. */
+  all(name, ...values) {
+    const found = [];
+    for (;;) {
+      const one = this.borrowed(Uint8Array, name, ...values);
+      if (one.length === 0) return found;
+      found.push(one);
+    }
+  }
+
   /** A copy of what call(name, ...values, &count) points to. */
   borrowed(Type, name, ...values) {
     return this.with((memory) => {

@@ -138,6 +138,9 @@ export const EVENT_VIEWPOINT = 2;
 export const EVENT_SUBSCRIBED = 3;
 export const EVENT_DROPPED = 4;
 export const EVENT_EXPIRED = 5;
+export const TRACKS_LIST = 0;
+export const TRACKS_OBJECT = 1;
+export const TRACKS_TICK = 2;
 
 // Structs: their size, and of each field the offset, DataView's name of its type or
 // the struct, and the number of elements.
@@ -384,4 +387,50 @@ export const connectionState = {size: 88, fields: {
   lagging: [76, 'Uint32', 1],
   pending: [80, 'Uint32', 1],
   oldestPending: [84, 'Uint32', 1],
+}};
+export const track = {size: 12, fields: {
+  volume: [0, 'Uint32', 1],
+  texture: [4, 'Uint32', 1],
+  region: [8, 'Uint32', 1],
+}};
+export const trackName = {size: 24, fields: {
+  structSize: [0, 'Uint32', 1],
+  volume: [4, 'Uint32', 1],
+  texture: [8, 'Uint32', 1],
+  place: [12, 'Uint32', 3],
+}};
+export const trackPublisherOptions = {size: 32, fields: {
+  structSize: [0, 'Uint32', 1],
+  snapshotSeconds: [8, 'Float64', 1],
+  snapshotShare: [16, 'Float64', 1],
+  host: [24, 'Uint32', 1],
+}};
+export const trackMessage = {size: 32, fields: {
+  structSize: [0, 'Uint32', 1],
+  type: [4, 'Uint32', 1],
+  track: [8, track, 1],
+  number: [20, 'Uint32', 1],
+  bytes: [24, 'Uint32', 1],
+  size: [28, 'Uint32', 1],
+}};
+export const trackReceiverOptions = {size: 32, fields: {
+  structSize: [0, 'Uint32', 1],
+  reach: [4, 'Float32', 1],
+  maxTracks: [8, 'Uint32', 1],
+  maxWaitingBytes: [16, 'BigUint64', 1],
+  host: [24, 'Uint32', 1],
+}};
+export const trackObject = {size: 16, fields: {
+  track: [0, track, 1],
+  number: [12, 'Uint32', 1],
+}};
+export const trackReceiverState = {size: 56, fields: {
+  structSize: [0, 'Uint32', 1],
+  wantsHello: [4, 'Uint32', 1],
+  complete: [8, 'Uint32', 1],
+  wantedChanges: [16, 'BigUint64', 1],
+  objects: [24, 'BigUint64', 1],
+  repeated: [32, 'BigUint64', 1],
+  damaged: [40, 'BigUint64', 1],
+  requests: [48, 'BigUint64', 1],
 }};

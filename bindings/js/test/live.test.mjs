@@ -1,35 +1,24 @@
 // The light of a server in Chromium, as it changes: each state is one of the server's, on the GPU too.
 import assert from 'node:assert/strict';
-import {createHash} from 'node:crypto';
-import {execFileSync} from 'node:child_process';
-import {mkdtempSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
+import {mkdtempSync, rmSync, writeFileSync} from 'node:fs';
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {after, before, test} from 'node:test';
 
 import {CHROMIUM_WITH_GPU, launch, pageOf, serve} from './browser_support.mjs';
 import {giServer} from './gi_server.mjs';
-import {bytes, program, randomWords} from './support.mjs';
+import {FPS, FRAMES, call, digest, fromWhole, makeRoom, openPage, updates} from './live_support.mjs';
+import {bytes, randomWords} from './support.mjs';
 import {VolumeEncoder, Writer, volumeOfLayout} from 'gicodec/encoder';
 
-const FRAMES = 24, FPS = 25;
-let browser, pages, folder, server, url;
-const states = new Map();  // by colour: that of visibility
-
-const digest = (bytes) => createHash('sha256').update(bytes).digest('hex').slice(0, 16);
+let browser, pages, folder, server, url, states;
 
 const play = (file, {options = [], ...more} = {}) => giServer(join(folder, file), {
   ...more, options: ['--proofs', '--rate', `${FPS}`, '--allow-origin', '*', ...options]});
 
 before(async () => {
   folder = mkdtempSync(join(tmpdir(), 'gicodec-live-'));
-  const run = (name, ...values) => execFileSync(program(name), [...values, '-q'], {cwd: folder, stdio: 'pipe'});
-  run('gi-trace', '--scene', 'tomb', '--grid', '8x4x8', '--frames', `${FRAMES}`, '--fps', `${FPS}`, '-o', 'room.gic');
-  run('gicodec', 'decode', 'room.gic', '-o', 'out', '--files', 'raw');
-  for (let frame = 0; frame < FRAMES; ++frame) {
-    const file = (name) => readFileSync(join(folder, `out/${name}.${String(frame).padStart(4, '0')}.raw`));
-    states.set(`${digest(file('color'))} ${digest(file('vis'))}`, frame);
-  }
+  states = makeRoom(folder);
   server = await play('room.gic');
   url = `ws://${server.address}`;
   pages = await serve({'/webgl.html': pageOf('live_page'), '/webgpu.html': pageOf('live_page', true)});
@@ -42,29 +31,14 @@ after(async () => {
   rmSync(folder, {recursive: true, force: true});
 });
 
-async function open(name) {
-  const page = await browser.newPage();
-  await page.goto(`${pages.origin}/${name}.html${name === 'webgpu' ? '?webgpu' : ''}`);
-  await page.waitForFunction('window.ready', {timeout: 60000});
-  assert.equal(await page.evaluate('window.ready'), true);
-  return page;
-}
-const call = (page, method, ...values) => page.evaluate((m, v) => window.page[m](...v), method, values);
-const updates = (page, count) => page.waitForFunction((n) => window.page.seen().length >= n, {timeout: 60000}, count);
-
-/** Updates from the first on after which a client has all blocks: the first ones come in parts. */
-function fromWhole(seen) {
-  const first = seen.findIndex(({color, vis}) => states.has(`${color} ${vis}`));
-  assert.ok(first >= 0 && first < seen.length / 2, `update ${first} is the first whole one`);
-  return seen.slice(first);
-}
+const open = (name) => openPage(browser, pages.origin, name);
 
 for (const [name, options, count] of [['webgl', {}, 200], ['webgpu', {}, 60], ['webgl', {worker: false}, 60]]) {
   test(`${name} follows a server ${JSON.stringify(options)}`, async () => {
     const page = await open(name);
     await call(page, 'start', url, options);
     await updates(page, count);
-    const seen = fromWhole(await call(page, 'seen'));
+    const seen = fromWhole(states, await call(page, 'seen'));
     for (const {color, vis, gpu} of seen) {
       assert.ok(states.has(`${color} ${vis}`), 'a state that the server never had');
       assert.equal(gpu, color);
@@ -130,7 +104,7 @@ test('it comes back after a server that was killed, and after a context that was
   await call(page, 'lose');
   await updates(page, (await call(page, 'seen')).length + 5);
   const seen = await call(page, 'seen');
-  const [first, then] = [fromWhole(seen.slice(0, before)), fromWhole(seen.slice(before))];
+  const [first, then] = [fromWhole(states, seen.slice(0, before)), fromWhole(states, seen.slice(before))];
   for (const {color, vis} of [...first, ...then]) assert.ok(states.has(`${color} ${vis}`));
   for (const {color, gpu} of then.slice(-3)) assert.equal(gpu, color);
   const held = await call(page, 'textures');

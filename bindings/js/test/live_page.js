@@ -33,6 +33,13 @@ async function isOnGpu(texture, held) {
   return wanted.every((one, i) => one === Math.round(255 * floats[i]));
 }
 
+/** A connection to NATS of these options, where `source` is no URL. */
+async function sourceOf(source) {
+  if (typeof source === 'string') return source;
+  const {wsconnect} = await import('/nats-core.js');
+  return wsconnect({reconnectTimeWait: 100, ...source});
+}
+
 window.page = {
   /** Follows a server of a layout: what of each update is on the GPU. */
   follow(url, layout, names) {
@@ -53,10 +60,10 @@ window.page = {
       busy = false;
     });
   },
-  start(url, options) {
+  async start(source, options) {
     seen = [];
     events = [];
-    live = new GIClient(renderer, url, options);
+    live = new GIClient(renderer, await sourceOf(source), options);
     scene.add(live.object);
     let turn = Promise.resolve();
     for (const type of ['connected', 'volumes', 'lost', 'closed', 'error']) {

@@ -1,10 +1,11 @@
 // Compiles, and what must not compile does not.
 import {Decoder, GicodecError, open, peek, ready, useWorkers, type Player, type Texels} from 'gicodec';
-import {connect, type ClientVolume} from 'gicodec/client';
+import {connect, connectNats, type ClientVolume} from 'gicodec/client';
 import {Encoder, Writer, ddgiIrradiance, volumeOfLayout, type VolumeDesc} from 'gicodec/encoder';
 import {
   GIClient, GILoader, ProbeVolume, ProbeVolumeHelper, VolumeLight, captureLightProbeGrid, saveLightProbeGrid, type StateGrid,
 } from 'gicodec/three';
+import type {NatsConnection} from '@nats-io/nats-core';
 import type {Camera, Scene, Texture, WebGLRenderer} from 'three';
 import type {OwnBytes} from 'gicodec';
 
@@ -73,4 +74,12 @@ export async function light(scene: Scene, renderer: WebGLRenderer): Promise<OwnB
     return saveLightProbeGrid(renderer, [await captureLightProbeGrid(renderer, grid)], {states: [{time: 6}]});
   }
   return new Uint8Array();
+}
+
+export async function many(renderer: WebGLRenderer, nats: NatsConnection): Promise<GIClient> {
+  const live = await connectNats(nats, {prefix: 'light', reach: 4, onUpdate: (client) => console.log(client.state.update)});
+  await live.closed;
+  // @ts-expect-error: the token of a gi-server
+  await connectNats(nats, {token: 'x'});
+  return new GIClient(renderer, nats, {reach: 4});
 }

@@ -112,3 +112,75 @@ export interface Connection {
 
 /** Follows a server over WebSockets (gi-server --listen-web): wss://HOST:PORT. */
 export function connect(url: string, options?: ConnectOptions): Promise<Connection>;
+
+/** A region of a texture, which is received by itself. */
+export interface Track {
+  volume: number;
+  texture: number;
+  region: number;
+}
+
+export interface TrackReceiverOptions {
+  /**
+   * Distance from the viewpoint, in world units, up to which regions are received, the nearest first. Absent:
+   * all of them, or those of client.subscribe().
+   */
+  reach?: number;
+  maxTracks?: number;
+  maxWaitingBytes?: number;
+}
+
+/**
+ * Stands between messages of tracks (docs/protocol.md, "Tracks") and a Client of shared delivery, for which it
+ * is the server. Has no transport.
+ */
+export interface TrackReceiver {
+  /** Takes a message of the publisher. Missing, repeated, reordered and damaged ones are no errors. */
+  receive(message: Bytes): void;
+  /** Takes a message of the client: hello() and messages(). */
+  take(message: Bytes): void;
+  /** The messages for the client. Call it when no more can be received without waiting. */
+  messages(): OwnBytes[];
+  /** The tracks to receive updates of, the nearest first. */
+  readonly wanted: Track[];
+  /** What to fetch, once: the last list and tick, and objects; of number 0 a track's last snapshot. */
+  requests(): {list: boolean; objects: {track: Track; number: number}[]};
+  /** What identifies a track in subjects; null if there is none. */
+  name(track: Track): {volume: string; texture: string; place: number[]} | null;
+  readonly state: {
+    /** A later publisher is there: take(client.hello()). */
+    wantsHello: boolean;
+    /** The client has all that is wanted as of the last tick. */
+    complete: boolean;
+    wantedChanges: number;
+    objects: number;
+    repeated: number;
+    damaged: number;
+    requests: number;
+  };
+}
+export const TrackReceiver: {create(options?: TrackReceiverOptions): Promise<TrackReceiver>};
+
+/** What is used of a NatsConnection of @nats-io/nats-core. */
+export interface NatsConnection {
+  subscribe(subject: string, options: {callback(error: Error | null, message: {data: Uint8Array}): void}): {unsubscribe(): void};
+  request(subject: string, payload: undefined, options: {timeout: number}): Promise<{data: Uint8Array; headers?: {has(name: string): boolean}}>;
+  status(): AsyncIterable<{type: string; server?: string}>;
+  closed(): Promise<void | Error>;
+  isClosed(): boolean;
+}
+
+export interface NatsOptions extends Omit<ClientOptions, 'delivery' | 'token'> {
+  /** That of gi-server --nats-prefix: "gicodec". */
+  prefix?: string;
+  /** See TrackReceiverOptions. */
+  reach?: number;
+  /** Called after each update of what the client holds. */
+  onUpdate?(client: Client): void;
+  /** Called when the connection was lost, which makes itself anew; the client keeps the last state. */
+  onLost?(wait: number, why: string): void;
+  signal?: AbortSignal;
+}
+
+/** Follows a publisher over a connection to NATS (gi-server --nats), which stays the caller's. */
+export function connectNats(nats: NatsConnection, options?: NatsOptions): Promise<Connection>;

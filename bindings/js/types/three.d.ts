@@ -1,7 +1,7 @@
 import type {
   Box3, Camera, Data3DTexture, DataArrayTexture, EventDispatcher, Group, Light, Loader, LoadingManager, Object3D, Texture, Vector3,
 } from 'three';
-import type {ClientOptions, ClientState} from './client.js';
+import type {ClientOptions, ClientState, NatsConnection} from './client.js';
 import type {Limits} from './common.js';
 import type {OwnBytes, Source, Texels} from './index.js';
 
@@ -135,6 +135,10 @@ export interface GIClientOptions extends ClientOptions {
   everything?: boolean;
   /** False: decodes on the page's thread, where a content security policy has no worker-src blob:. */
   worker?: boolean;
+  /** Of a connection to NATS: that of gi-server --nats-prefix, "gicodec". */
+  prefix?: string;
+  /** Of a connection to NATS: up to how far from the camera regions are received, in world units; absent: all. */
+  reach?: number;
   signal?: AbortSignal;
   /**
    * The metadata that a file of such a volume would have (FORMAT.md, "Keys"), which servers do not send:
@@ -170,8 +174,8 @@ export interface GIClientEvents {
 
 /** The light of a gi-server in a scene, as it changes. A connection that is lost is tried again. */
 export class GIClient extends EventDispatcher<GIClientEvents> {
-  /** `url`: wss://HOST:PORT of gi-server --listen-web. */
-  constructor(renderer: object, url: string, options?: GIClientOptions);
+  /** `source`: wss://HOST:PORT of gi-server --listen-web, or a connection to NATS, which stays the caller's. */
+  constructor(renderer: object, source: string | NatsConnection, options?: GIClientOptions);
   /** What it shows: add it to the scene. */
   readonly object: Group;
   readonly statistics: Readonly<GIClientStatistics>;

@@ -90,6 +90,14 @@ set(client_exports
   gicodec_client_texels
   gicodec_client_changed
   gicodec_client_read
+  gicodec_track_receiver_create
+  gicodec_track_receiver_receive
+  gicodec_track_receiver_take
+  gicodec_track_receiver_message
+  gicodec_track_receiver_wanted
+  gicodec_track_receiver_requests
+  gicodec_track_receiver_name
+  gicodec_track_receiver_get_state
 )
 set(encoder_exports
   _initialize

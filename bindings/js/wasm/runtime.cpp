@@ -3,7 +3,7 @@
 #include <gicodec/c/client.h>
 #include <gicodec/c/container.h>
 #include <gicodec/c/encoder.h>
-#include <gicodec/c/server.h>
+#include <gicodec/c/tracks.h>
 
 #include <algorithm>
 #include <cstddef>

@@ -91,6 +91,9 @@ EVENT_VIEWPOINT = 2
 EVENT_SUBSCRIBED = 3
 EVENT_DROPPED = 4
 EVENT_EXPIRED = 5
+TRACKS_LIST = 0
+TRACKS_OBJECT = 1
+TRACKS_TICK = 2
 
 # Names of statuses.
 STATUS_NAMES = {0: 'ok', 1: 'end', 100: 'invalid_argument', 101: 'invalid_description', 102: 'view_too_small', 103: 'block_out_of_range', 104: 'block_repeated', 105: 'unsupported_format', 106: 'unknown_backend', 107: 'buffer_too_small', 108: 'unsupported_backend', 109: 'unsupported_shape', 110: 'unknown_kind', 111: 'unknown_volume', 112: 'unknown_texture', 113: 'unknown_group', 114: 'unknown_connection', 115: 'mask_mismatch', 116: 'invalid_geometry', 117: 'invalid_name', 118: 'invalid_time', 119: 'invalid_bound', 120: 'invalid_interval', 121: 'presence_missing', 122: 'presence_invalid', 123: 'unknown_region', 124: 'unknown_frame', 125: 'wrong_frame', 126: 'invalid_settings', 127: 'out_of_order', 200: 'out_of_memory', 201: 'limit_exceeded', 202: 'cancelled', 300: 'truncated', 301: 'corrupt', 302: 'checksum_mismatch', 303: 'not_gicodec', 304: 'unsupported_version', 305: 'unsupported_feature', 400: 'description_mismatch', 401: 'reference_missing', 402: 'backend_missing', 500: 'backend_failed', 501: 'backend_unavailable', 502: 'io_failed'}
@@ -406,6 +409,73 @@ class gicodec_connection_state(ctypes.Structure):
     ]
 
 
+class gicodec_track(ctypes.Structure):
+    _fields_ = [
+        ("volume", ctypes.c_uint32),
+        ("texture", ctypes.c_uint32),
+        ("region", ctypes.c_uint32),
+    ]
+
+
+class gicodec_track_name(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", ctypes.c_uint32),
+        ("volume", ctypes.c_char_p),
+        ("texture", ctypes.c_char_p),
+        ("place", ctypes.c_uint32 * 3),
+    ]
+
+
+class gicodec_track_publisher_options(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", ctypes.c_uint32),
+        ("snapshot_seconds", ctypes.c_double),
+        ("snapshot_share", ctypes.c_double),
+        ("host", ctypes.c_void_p),
+    ]
+
+
+class gicodec_track_message(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", ctypes.c_uint32),
+        ("type", ctypes.c_uint32),
+        ("track", gicodec_track),
+        ("number", ctypes.c_uint32),
+        ("bytes", ctypes.c_void_p),
+        ("size", ctypes.c_size_t),
+    ]
+
+
+class gicodec_track_receiver_options(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", ctypes.c_uint32),
+        ("reach", ctypes.c_float),
+        ("max_tracks", ctypes.c_uint32),
+        ("max_waiting_bytes", ctypes.c_uint64),
+        ("host", ctypes.c_void_p),
+    ]
+
+
+class gicodec_track_object(ctypes.Structure):
+    _fields_ = [
+        ("track", gicodec_track),
+        ("number", ctypes.c_uint32),
+    ]
+
+
+class gicodec_track_receiver_state(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", ctypes.c_uint32),
+        ("wants_hello", ctypes.c_uint32),
+        ("complete", ctypes.c_uint32),
+        ("wanted_changes", ctypes.c_uint64),
+        ("objects", ctypes.c_uint64),
+        ("repeated", ctypes.c_uint64),
+        ("damaged", ctypes.c_uint64),
+        ("requests", ctypes.c_uint64),
+    ]
+
+
 # What each call returns, and takes.
 CALLS = {
     "gicodec_status_text": (ctypes.c_char_p, (ctypes.c_int32,)),
@@ -572,6 +642,22 @@ CALLS = {
     "gicodec_server_event": (ctypes.c_int32, (ctypes.c_void_p, ctypes.c_void_p,)),
     "gicodec_server_viewpoint": (ctypes.c_int32, (ctypes.c_void_p, ctypes.c_uint32, ctypes.c_void_p,)),
     "gicodec_server_connection": (ctypes.c_int32, (ctypes.c_void_p, ctypes.c_uint32, ctypes.c_void_p,)),
+    "gicodec_track_publisher_create": (ctypes.c_int32, (ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p,)),
+    "gicodec_track_publisher_destroy": (None, (ctypes.c_void_p,)),
+    "gicodec_track_publisher_update": (ctypes.c_int32, (ctypes.c_void_p, ctypes.c_double, ctypes.c_double,)),
+    "gicodec_track_publisher_message": (ctypes.c_int32, (ctypes.c_void_p, ctypes.c_void_p,)),
+    "gicodec_track_publisher_name": (ctypes.c_int32, (ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p,)),
+    "gicodec_track_publisher_kept_seconds": (ctypes.c_double, (ctypes.c_void_p,)),
+    "gicodec_track_publisher_repeat_snapshots": (ctypes.c_int32, (ctypes.c_void_p,)),
+    "gicodec_track_receiver_create": (ctypes.c_int32, (ctypes.c_void_p, ctypes.c_void_p,)),
+    "gicodec_track_receiver_destroy": (None, (ctypes.c_void_p,)),
+    "gicodec_track_receiver_receive": (ctypes.c_int32, (ctypes.c_void_p, ctypes.c_void_p, ctypes.c_size_t,)),
+    "gicodec_track_receiver_take": (ctypes.c_int32, (ctypes.c_void_p, ctypes.c_void_p, ctypes.c_size_t,)),
+    "gicodec_track_receiver_message": (ctypes.c_void_p, (ctypes.c_void_p, ctypes.c_void_p,)),
+    "gicodec_track_receiver_wanted": (ctypes.c_int32, (ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p,)),
+    "gicodec_track_receiver_requests": (ctypes.c_int32, (ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p,)),
+    "gicodec_track_receiver_name": (ctypes.c_int32, (ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p,)),
+    "gicodec_track_receiver_get_state": (ctypes.c_int32, (ctypes.c_void_p, ctypes.c_void_p,)),
 }
 # Calls whose result is a status.
 FALLIBLE = frozenset((
@@ -675,4 +761,16 @@ FALLIBLE = frozenset((
     "gicodec_server_event",
     "gicodec_server_viewpoint",
     "gicodec_server_connection",
+    "gicodec_track_publisher_create",
+    "gicodec_track_publisher_update",
+    "gicodec_track_publisher_message",
+    "gicodec_track_publisher_name",
+    "gicodec_track_publisher_repeat_snapshots",
+    "gicodec_track_receiver_create",
+    "gicodec_track_receiver_receive",
+    "gicodec_track_receiver_take",
+    "gicodec_track_receiver_wanted",
+    "gicodec_track_receiver_requests",
+    "gicodec_track_receiver_name",
+    "gicodec_track_receiver_get_state",
 ))

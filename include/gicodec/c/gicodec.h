@@ -9,5 +9,6 @@
 #include <gicodec/c/description.h>
 #include <gicodec/c/encoder.h>
 #include <gicodec/c/server.h>
+#include <gicodec/c/tracks.h>
 
 #endif

@@ -122,6 +122,8 @@ Status TrackReceiver::State::take(WaitingObject waiting) {
 
 Status TrackReceiver::State::take(TrackTick said) {
   const int run = compare_run(said.epoch, said.generation);
+  // The first request may have come too early, or to servers without a leader.
+  if (!table && ++lists_missed % kFirstPatience == 0) wants_list = true;
   if (run != 0 || (tick && said.update <= tick->update)) {
     if (run <= 0) ++statistics.repeated;
     return Status::ok;

@@ -2,13 +2,15 @@
 import {EventDispatcher, Group, Vector3} from 'three';
 import workerText from 'gicodec:text/three/client_worker';
 
+import {NatsBus} from '../nats.js';
 import {ClientHost} from './client_host.js';
 import {findShown, useVolumes} from './shown.js';
 import {Tiles} from './tilings.js';
 
 /** Milliseconds between viewpoints. */
 const VIEW_EVERY = 100;
-const OPTIONS = ['token', 'delivery', 'budgetBlocks', 'budgetBytes', 'limits', 'timeout', 'everything', 'worker', 'signal', 'metadata'];
+const OPTIONS = ['token', 'delivery', 'budgetBlocks', 'budgetBytes', 'limits', 'timeout', 'everything', 'worker', 'signal', 'metadata',
+                 'prefix', 'reach'];
 
 /**
  * Follows a server. `object` has its volumes, and is part of the scene. Events: "connected", "update" (with
@@ -28,9 +30,14 @@ export class GIClient extends EventDispatcher {
   #viewed = 0;
   #ended = false;
   #failed = false;
+  #nats;
+  #bus;
 
-  /** `url`: wss://HOST:PORT of gi-server --listen-web. `worker: false` decodes on the page's thread. */
-  constructor(renderer, url, options = {}) {
+  /**
+   * `source`: wss://HOST:PORT of gi-server --listen-web, or a connection of @nats-io/nats-core, to which
+   * gi-server --nats publishes. `worker: false` decodes on the page's thread.
+   */
+  constructor(renderer, source, options = {}) {
     super();
     for (const name of Object.keys(options)) {
       if (!OPTIONS.includes(name)) throw new TypeError(`there is no option ${name}: there are ${OPTIONS.join(', ')}`);
@@ -41,6 +48,8 @@ export class GIClient extends EventDispatcher {
     this.object.name = 'GIClient';
     if (signal?.aborted) throw signal.reason;
     signal?.addEventListener('abort', () => this.dispose(), {once: true});
+    if (typeof source === 'object') this.#nats = source;
+    const url = this.#nats ? undefined : `${source}`;
     this.#start(worker && typeof Worker === 'function', {url, options: rest}).catch((error) => this.#fail(error));
   }
 
@@ -49,14 +58,14 @@ export class GIClient extends EventDispatcher {
     const module = await compiledClient();
     await useVolumes(this.#renderer);
     if (this.#ended) return;
-    const take = (one) => this.#take(one);
+    const take = (one) => (one.type === 'bus' ? this.#ended || this.#useBus(one) : this.#take(one));
     if (worker) {
       const url = URL.createObjectURL(new Blob([workerText], {type: 'text/javascript'}));
       const made = new Worker(url, {name: 'gicodec client'});
       made.onmessage = ({data}) => take(data);
       made.onerror = ({message: why}) => this.#fail(new Error(
           `the worker failed: ${why ?? 'it could not start; a content security policy needs worker-src blob:'}`));
-      this.#send = (one) => made.postMessage(one);
+      this.#send = (one, transfer) => made.postMessage(one, transfer);
       this.#free = () => { made.terminate(); URL.revokeObjectURL(url); };
     } else {
       const host = new ClientHost(take);
@@ -64,6 +73,20 @@ export class GIClient extends EventDispatcher {
       this.#free = () => host.take({type: 'close'});
     }
     this.#send({type: 'connect', module, ...message});
+  }
+
+  /** What the client asks of the page's connection. */
+  #useBus({call, value}) {
+    const tell = (name, one, transfer) => this.#send({type: 'bus', call: name, value: one}, transfer);
+    this.#bus ??= new NatsBus(this.#nats, {
+      take: (bytes) => {
+        const copy = bytes.slice();  // of a message in what arrived at once
+        tell('take', copy, [copy.buffer]);
+      },
+      lost: (why) => tell('lost', why),
+      failed: (error) => tell('failed', error),
+    });
+    this.#bus[call](value);
   }
 
   /** Follows messages one after the other. */
@@ -183,6 +206,7 @@ export class GIClient extends EventDispatcher {
     if (this.#ended) return;
     this.#ended = true;
     this.#send?.({type: 'close'});
+    this.#bus?.close();
     setTimeout(this.#free, 1000);  // once the goodbye is sent
     this.#forget();
     this.object.removeFromParent();

@@ -3,6 +3,8 @@
 import {Client} from '../client.js';
 import {Connection} from '../connection.js';
 import {Instance, bytesOf} from '../instance.js';
+import {TrackConnection} from '../track_connection.js';
+import {TrackReceiver} from '../track_receiver.js';
 import {Tiles} from './tilings.js';
 
 export class ClientHost {
@@ -15,6 +17,7 @@ export class ClientHost {
   #tiles = new Map();  // of their textures, by id
   #decodeMs = 0;
   #closed = false;
+  #bus = {};       // what takes messages that come over the page's connection
 
   /** `post(message, transfer)` sends to the page. */
   constructor(post) {
@@ -28,6 +31,7 @@ export class ClientHost {
         case 'connect': return await this.#connect(message);
         case 'view': return this.#view(message);
         case 'drawn': return this.#drawn();
+        case 'bus': return this.#bus[message.call]?.(message.value);
         case 'close':
           this.#closed = true;
           return this.#connection?.close();
@@ -37,8 +41,11 @@ export class ClientHost {
     }
   }
 
-  async #connect({module, url, options: {everything, timeout, ...options}}) {
-    this.#client = await Client.create({create: () => Instance.create(module)}, options);
+  async #connect({module, url, options: {everything, timeout, prefix, reach, ...options}}) {
+    const modules = {create: () => Instance.create(module)};
+    const tracks = url === undefined;  // by a connection of the page's
+    this.#client = await Client.create(modules, tracks ? {...options, delivery: 'shared'} : options);
+    const receiver = tracks && await TrackReceiver.create(modules, {reach});
     if (this.#closed) return;
     const receive = this.#client.receive.bind(this.#client);
     this.#client.receive = (message) => {
@@ -49,11 +56,18 @@ export class ClientHost {
         this.#decodeMs += performance.now() - began;
       }
     };
-    this.#connection = new Connection(this.#client, url, {
-      timeout, everything, onUpdate: () => this.#update(),
-      onLost: (wait, why) => this.#post({type: 'lost', wait, why}),
-    });
+    const on = {onUpdate: () => this.#update(), onLost: (wait, why) => this.#post({type: 'lost', wait, why})};
+    this.#connection = tracks
+      ? new TrackConnection(this.#client, receiver, (bus) => this.#busOfPage(bus), {prefix, ...on})
+      : new Connection(this.#client, url, {timeout, everything, ...on});
     this.#connection.closed.then((reason) => this.#post({type: 'closed', reason}), (error) => this.#fail(error));
+  }
+
+  /** The page's NatsBus. */
+  #busOfPage(bus) {
+    this.#bus = bus;
+    const call = (name) => (value) => this.#post({type: 'bus', call: name, value});
+    return {subscribe: call('subscribe'), unsubscribe: call('unsubscribe'), request: call('request'), close: call('close')};
   }
 
   #view({viewpoint}) {

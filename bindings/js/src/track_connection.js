@@ -1,0 +1,131 @@
+// A client over tracks, which any number of viewers receive from a broker.
+import {Subjects} from './nats.js';
+
+/** Follows a publisher: calls onUpdate(client) after what changed what the client holds. */
+export class TrackConnection {
+  #receiver;
+  #bus;
+  #subjects;
+  #options;
+  #followed = new Map();  // tracks by the subject of their updates
+  #changes = -1;
+  #flushes = false;
+  #ended = false;
+  #end;
+  #abort;
+
+  /** `makeBus({take, lost, failed})` gives {subscribe, unsubscribe, request, close}, see NatsBus. */
+  constructor(client, receiver, makeBus, {prefix = 'gicodec', ...options}) {
+    this.client = client;
+    this.#receiver = receiver;
+    this.#subjects = new Subjects(prefix);
+    this.#options = options;
+    /** Resolves once the session has ended; rejects if it cannot go on. */
+    this.closed = new Promise((resolve, reject) => (this.#end = {resolve, reject}));
+    this.closed.catch(() => {});  // unless somebody waits for it, it may fail unheard
+    this.#abort = () => this.#fail(options.signal.reason);
+    options.signal?.addEventListener('abort', this.#abort, {once: true});
+    this.#bus = makeBus({
+      take: (message) => this.#guard(() => { this.#receiver.receive(message); this.#wake(); }),
+      lost: (why) => this.#ended || options.onLost?.(0, why),
+      failed: (error) => this.#fail(error),
+    });
+    this.#guard(() => {
+      for (const subject of [this.#subjects.list, this.#subjects.tick]) this.#bus.subscribe(subject);
+      receiver.take(client.hello());
+      this.#fetch();
+    });
+  }
+
+  /** All messages that come at once make one update. */
+  #wake() {
+    if (this.#flushes) return;
+    this.#flushes = true;
+    setTimeout(() => this.#guard(() => this.#flush()));
+  }
+
+  #flush() {
+    this.#flushes = false;
+    const {client} = this, before = client.state.serial;
+    for (let messages; (messages = this.#receiver.messages()).length > 0;) {
+      for (const message of messages) client.receive(message);
+      this.#answer();
+    }
+    if (this.#receiver.state.wantsHello) {
+      this.#receiver.take(client.hello());
+      this.#wake();
+    }
+    this.#follow();
+    this.#fetch();
+    const {serial, consistent} = client.state;
+    if (serial !== before && consistent) this.#options.onUpdate?.(client);
+  }
+
+  #answer() {
+    for (const message of this.client.messages()) this.#receiver.take(message);
+  }
+
+  /** Subscribes to the updates of wanted tracks, and to no others. */
+  #follow() {
+    const {wantedChanges} = this.#receiver.state;
+    const {wanted} = this.#receiver;
+    if (wantedChanges === this.#changes && wanted.length === this.#followed.size) return;
+    this.#changes = wantedChanges;
+    const subjects = new Map(wanted.map((track) => [this.#subjects.updates(this.#receiver.name(track)), track]));
+    for (const subject of this.#followed.keys()) {
+      if (!subjects.has(subject)) this.#bus.unsubscribe(subject);
+    }
+    for (const subject of subjects.keys()) {
+      if (!this.#followed.has(subject)) this.#bus.subscribe(subject);
+    }
+    this.#followed = subjects;
+  }
+
+  #fetch() {
+    const {list, objects} = this.#receiver.requests();
+    const subjects = this.#subjects;
+    if (list) {
+      this.#bus.request(subjects.lastOf(subjects.list));
+      this.#bus.request(subjects.lastOf(subjects.tick));
+    }
+    for (const {track, number} of objects) {
+      const subject = subjects.object(this.#receiver.name(track), number);
+      this.#bus.request(number === 0 ? subjects.lastOf(subject) : subjects.updateOf(subject));
+    }
+  }
+
+  /** Says what the client has to say, e.g. after client.setViewpoint(). */
+  send() {
+    if (this.#ended) return;
+    this.#answer();
+    this.#wake();
+  }
+
+  #guard(body) {
+    if (this.#ended) return;
+    try {
+      body();
+    } catch (error) {
+      this.#fail(error);
+    }
+  }
+
+  /** Ends the session for good. */
+  close() {
+    if (this.#ended) return;
+    this.#stop();
+    this.#end.resolve('');
+  }
+
+  #fail(error) {
+    this.#stop();
+    this.#end.reject(error);
+  }
+
+  #stop() {
+    if (this.#ended) return;
+    this.#ended = true;
+    this.#options.signal?.removeEventListener('abort', this.#abort);
+    this.#bus?.close();
+  }
+}
