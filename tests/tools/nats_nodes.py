@@ -72,17 +72,36 @@ def make_cluster(work):
     return nodes
 
 
-class Nats:
-    """As little of a client as tests need."""
+class Alone(Node):
+    """A server without TLS and users, and with so many bytes of JetStream."""
 
-    def __init__(self, node, work, user, password=None):
+    def __init__(self, work, memory):
+        self.name, self.process = "alone", None
+        self.port = free_ports(1)[0]
+        self.config = os.path.join(work, "alone.conf")
+        self.log = os.path.join(work, "alone.log")
+        self.environment = dict(os.environ)
+        with open(self.config, "w") as file:
+            file.write(f'listen: "127.0.0.1:{self.port}"\n'
+                       f'jetstream {{ store_dir: "{work}/alone", max_memory_store: {memory}, max_file_store: 1MB }}\n')
+
+    @property
+    def url(self):
+        return f"nats://127.0.0.1:{self.port}"
+
+
+class Nats:
+    """As little of a client as tests need. Without a user it goes to a server that is alone."""
+
+    def __init__(self, node, work=None, user=None, password=None):
         raw = socket.create_connection(("127.0.0.1", node.port), 5)
         self.info = raw.recv(65536)
-        context = ssl.create_default_context(cafile=os.path.join(work, "certs/ca.pem"))
-        self.socket = context.wrap_socket(raw, server_hostname="localhost")
-        self.bytes = b""
-        options = {"verbose": False, "headers": True, "no_responders": True, "lang": "test", "version": "1",
-                   "user": user, "pass": PASSWORDS[user] if password is None else password}
+        self.socket, self.bytes = raw, b""
+        options = {"verbose": False, "headers": True, "no_responders": True, "lang": "test", "version": "1"}
+        if user is not None:
+            context = ssl.create_default_context(cafile=os.path.join(work, "certs/ca.pem"))
+            self.socket = context.wrap_socket(raw, server_hostname="localhost")
+            options |= {"user": user, "pass": PASSWORDS[user] if password is None else password}
         self.send(f"CONNECT {json.dumps(options)}\r\nPING\r\n".encode())
 
     def send(self, data):
@@ -93,6 +112,19 @@ class Nats:
 
     def subscribe(self, subject, number):
         self.send(f"SUB {subject} {number}\r\n".encode())
+
+    def request(self, subject, data=b"", seconds=5):
+        """The answer's bytes; None: there is none."""
+        inbox = f"_INBOX.test.{time.monotonic_ns()}"
+        self.subscribe(inbox, 99)
+        self.publish(subject, data, inbox)
+        deadline = time.monotonic() + seconds
+        while time.monotonic() < deadline:
+            answer = self.next(seconds)
+            if answer and answer[0] == "MSG" and answer[1] == inbox:
+                self.send(b"UNSUB 99\r\n")
+                return answer[2]
+        return None
 
     def _line(self):
         while b"\r\n" not in self.bytes:

@@ -18,7 +18,6 @@ using tools::Exit;
 using tools::fail;
 using tools::NatsMessage;
 
-constexpr double kNanoseconds = 1e9;
 constexpr std::size_t kMaxPrefix = 64;
 
 bool is_plain(char c) {
@@ -43,6 +42,13 @@ json parsed(const NatsMessage& message) {
   return json::parse(text, text + message.data.size(), nullptr, false);
 }
 
+std::int64_t nanoseconds(double seconds) { return static_cast<std::int64_t>(seconds * 1e9); }
+
+/// For which a message that is published again is known: JetStream wants no more than it keeps.
+double duplicate_seconds(const StreamSettings& settings) {
+  return std::min(30.0, settings.keep_seconds);
+}
+
 NatsMessage make_stream(const std::string& name, const std::vector<std::string>& subjects,
                         const StreamSettings& settings, const json& more, bool exists,
                         const std::string& reply) {
@@ -50,7 +56,7 @@ NatsMessage make_stream(const std::string& name, const std::vector<std::string>&
       {"name", name},          {"subjects", subjects},
       {"retention", "limits"}, {"discard", "old"},
       {"storage", "memory"},   {"num_replicas", settings.replicas},
-      {"allow_direct", true},  {"duplicate_window", static_cast<std::int64_t>(30 * kNanoseconds)}};
+      {"allow_direct", true},  {"duplicate_window", nanoseconds(duplicate_seconds(settings))}};
   config.update(more);
   return request(fmt::format("$JS.API.STREAM.{}.{}", exists ? "UPDATE" : "CREATE", name), reply,
                  config);
@@ -163,10 +169,10 @@ NatsMessage make_kept_stream(const TrackSubjects& subjects, const StreamSettings
 
 NatsMessage make_update_stream(const TrackSubjects& subjects, const StreamSettings& settings,
                                bool exists, const std::string& reply) {
-  return make_stream(subjects.update_stream(), subjects.update_subjects(), settings,
-                     {{"max_age", static_cast<std::int64_t>(settings.keep_seconds * kNanoseconds)},
-                      {"max_bytes", settings.keep_bytes}},
-                     exists, reply);
+  return make_stream(
+      subjects.update_stream(), subjects.update_subjects(), settings,
+      {{"max_age", nanoseconds(settings.keep_seconds)}, {"max_bytes", settings.keep_bytes}}, exists,
+      reply);
 }
 
 NatsMessage get_last(const std::string& stream, const std::string& subject,
