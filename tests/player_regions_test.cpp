@@ -39,7 +39,7 @@ class Cut {
         for (const std::uint32_t block : cut.blocks_of(region)) {
           texels.insert(texels.end(), block_bytes(desc), value(block, frame));
         }
-        const auto packet = encoders[i].encode(ConstTextureView(texels));
+        const auto packet = encoders[i].encode(ConstTextureView{texels});
         EXPECT_EQ(writer.add(frame, *packet, region), Status::ok);
       }
     }
@@ -75,7 +75,7 @@ TEST(PlayerRegions, OthersStayZeroAndAreNotRead) {
       ASSERT_EQ(player.frame(), frame);
       EXPECT_EQ(player.packets().size(), 2U);
       Bytes texels(static_cast<std::size_t>(texture_bytes(cut.desc)));
-      ASSERT_EQ(player.read(1, TextureView(texels)), Status::ok);
+      ASSERT_EQ(player.read(1, TextureView{texels}), Status::ok);
       for (std::uint32_t block = 0; block < block_count(cut.desc); ++block) {
         const std::uint32_t region = grid.region_of(block);
         const bool there = region == 1 || region == 4;

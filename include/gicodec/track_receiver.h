@@ -22,6 +22,7 @@ struct TrackReceiverOptions {
   /// Distance from the viewpoint, in world units, up to which regions of grids are received, the
   /// nearest first. 0: all of them, or those of the client's Subscribe.
   float reach = 0;
+  bool subscribed_only = false;  ///< nothing but the regions of the client's Subscribe
   std::uint32_t max_tracks = 1 << 17;  ///< of a list
   /// Bytes of objects that wait for others. Beyond them the receiver asks for snapshots.
   std::size_t max_waiting_bytes = std::size_t{256} << 20;

@@ -14,6 +14,7 @@ namespace {
 constexpr std::uint32_t kMagic = 0x73636967;  // "gics"
 /// Of an object: a delta, and an intra update of blocks that moved.
 constexpr std::size_t kMaxTrackPackets = 2;
+constexpr std::uint32_t kMaxTrackNumber = 1023;
 constexpr std::uint8_t kLastReason = static_cast<std::uint8_t>(Reason::unicast_full);
 
 /// A message to read into, or a const one to write.
@@ -265,7 +266,7 @@ void track_runs(Archive& archive, auto& runs, std::uint64_t update) {
     stream_id(archive, run.first);
     archive.number(run.count);
     archive.number(run.age);
-    archive.number(run.number);
+    archive.number(run.number, kMaxTrackNumber);
     archive.check(run.count > 0 && run.age <= update &&
                   run.first.region <= StreamId::kWholeVolume - run.count);
   });
@@ -302,7 +303,7 @@ void fields(Archive& archive, M& m) {
   track_head(archive, m);
   archive.number(m.previous);
   archive.check(m.previous < m.update);
-  archive.number(m.number);
+  archive.number(m.number, kMaxTrackNumber);
   stream_id(archive, m.stream);
   archive.check(m.stream.region != StreamId::kWholeVolume);
   items(archive, m.packets, kMaxTrackPackets, 1, [&](auto& packet) { archive.bytes(packet); });

@@ -16,6 +16,7 @@ struct gicodec_track_receiver : c::Handle {
   std::vector<Message> messages;  ///< for the client
   std::size_t told = 0;           ///< of these
   std::vector<gicodec_track> wanted;
+  TrackRequests taken;  ///< that the caller has not got
   std::vector<gicodec_track_object> requests;
   c::TrackTexts texts;
 };
@@ -29,6 +30,7 @@ gicodec_status gicodec_track_receiver_create(const gicodec_track_receiver_option
       [&](gicodec_track_receiver& handle, const gicodec_track_receiver_options& given) -> Status {
         TrackReceiverOptions settings;
         settings.reach = given.reach;
+        settings.subscribed_only = given.subscribed_only != 0;
         c::set(settings.max_tracks, given.max_tracks);
         if (given.max_waiting_bytes > SIZE_MAX) return Status::invalid_argument;
         c::set(settings.max_waiting_bytes, static_cast<std::size_t>(given.max_waiting_bytes));
@@ -86,13 +88,16 @@ gicodec_status gicodec_track_receiver_requests(gicodec_track_receiver* receiver,
                                                size_t* count) {
   return c::call(receiver, [&] {
     if (list == nullptr || objects == nullptr || count == nullptr) return Status::invalid_argument;
-    TrackRequests requests;
-    const Status status = c::keep(receiver->receiver->take_requests(), requests);
-    if (status != Status::ok) return status;
+    TrackRequests& taken = receiver->taken;
+    if (!taken.list && taken.objects.empty()) {
+      const Status status = c::keep(receiver->receiver->take_requests(), taken);
+      if (status != Status::ok) return status;
+    }
     receiver->requests.clear();
-    for (const auto& [stream, number] : requests.objects)
+    for (const auto& [stream, number] : taken.objects)
       receiver->requests.push_back({c::track_of(stream), number});
-    *list = requests.list ? 1 : 0;
+    *list = taken.list ? 1 : 0;
+    taken = {};
     *objects = c::point(std::span<const gicodec_track_object>(receiver->requests), count);
     return Status::ok;
   });

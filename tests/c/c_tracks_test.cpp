@@ -18,12 +18,11 @@ using Bytes = std::vector<std::uint8_t>;
 
 /// A receiver and its client, whose messages are carried at once.
 struct Viewer {
-  explicit Viewer(float reach = 0) {
+  explicit Viewer(
+      const gicodec_track_receiver_options& options = sized<gicodec_track_receiver_options>()) {
     auto viewing = sized<gicodec_client_options>();
     viewing.delivery = GICODEC_DELIVERY_SHARED;
     client = made<OwnedClient>([&](auto out) { return gicodec_client_create(&viewing, out); });
-    auto options = sized<gicodec_track_receiver_options>();
-    options.reach = reach;
     tracks =
         made<OwnedReceiver>([&](auto out) { return gicodec_track_receiver_create(&options, out); });
     EXPECT_EQ(gicodec_client_hello(client.get()), GICODEC_OK);
@@ -159,7 +158,9 @@ TEST(CTracks, ALateViewerHoldsWhatIsPublished) {
 TEST(CTracks, WithAReachTheNearOnesComeFirst) {
   Publisher publisher;
   for (int i = 0; i < 3; ++i) publisher.update();
-  const Viewer viewer(2);
+  auto options = sized<gicodec_track_receiver_options>();
+  options.reach = 2;
+  const Viewer viewer(options);
   auto viewpoint = sized<gicodec_viewpoint>();
   viewpoint.eye[0] = 7;
   viewpoint.target[0] = 8;
@@ -172,6 +173,30 @@ TEST(CTracks, WithAReachTheNearOnesComeFirst) {
     viewer.advance();
   }
   EXPECT_EQ(viewer.wanted(), (std::vector<std::string>{"room.color.3", "room.color.2"}));
+  EXPECT_EQ(viewer.state().complete, 1U);
+}
+
+TEST(CTracks, NothingButWhatIsSubscribedTo) {
+  Publisher publisher;
+  for (int i = 0; i < 3; ++i) publisher.update();
+  auto options = sized<gicodec_track_receiver_options>();
+  options.subscribed_only = 1;
+  const Viewer viewer(options);
+  const auto settle = [&] {
+    for (int trip = 0; trip < 4; ++trip) {
+      publisher.fetch(viewer);
+      viewer.advance();
+    }
+  };
+  settle();
+  EXPECT_TRUE(viewer.wanted().empty());
+  std::vector<std::uint8_t> blocks(32);
+  blocks[4] = 1;
+  ASSERT_EQ(gicodec_client_subscribe(viewer.client.get(), 0, 0, blocks.data(), blocks.size()),
+            GICODEC_OK);
+  viewer.answer();
+  settle();
+  EXPECT_EQ(viewer.wanted(), std::vector<std::string>{"room.color.2"});
   EXPECT_EQ(viewer.state().complete, 1U);
 }
 

@@ -361,6 +361,9 @@ RC_GTEST_PROP(TrackSimulation, ReceiversShowWhatWasPublished, (std::uint64_t see
   RC_ASSERT(!testing::Test::HasFailure());
 }
 
+/// A bundle whose presence comes by a snapshot, and other textures by updates before it.
+TEST(TrackSimulation, PresenceThatSkipsUpdates) { run_track_world(28956); }
+
 TEST(TrackSimulation, ManySchedules) {
   const std::uint64_t schedules = everything() ? 500 : 60;
   TrackCounts all;

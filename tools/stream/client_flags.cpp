@@ -22,7 +22,7 @@ void add_client_flags(tools::Command& app, ClientFlags& o) {
   add_nats_flags(app, o.viewer.link.net.nats,
                  "Instead of --connect: receive what a gi-server with --nats publishes",
                  "Over NATS");
-  app.add_option("--reach", o.viewer.link.net.reach,
+  app.add_option("--reach", o.viewer.link.net.tracks.reach,
                  "With --nats: how far from the camera light is received, in world units, the "
                  "nearest first; 0: all")
       ->allow(tools::in_range(0.0F, 1e9F))

@@ -176,7 +176,7 @@ void take_server(ClientFlags& o) {
              ? "--connect ADDR:PORT says where the server is, or --nats URL where NATS is"
              : "--connect and --nats exclude each other; name one of them");
   if (nats.urls.empty()) {
-    if (o.viewer.link.net.reach > 0) fail(Exit::usage, "--reach is for --nats");
+    if (o.viewer.link.net.tracks.reach > 0) fail(Exit::usage, "--reach is for --nats");
     o.viewer.link.server = parse_server(o.connect, "--connect");
     return;
   }
@@ -215,6 +215,7 @@ Exit run(ClientFlags& o) {
   limits.max_texture_bytes = limits.max_total_bytes = std::uint64_t{o.memory} << 20;
   if (!o.subscribe.empty() && o.subscribe != "all") {
     o.viewer.subscribe = tools::box_from_flag("--subscribe", o.subscribe, "all or ");
+    o.viewer.link.net.tracks.subscribed_only = true;
   }
   o.viewer.status = !o.quiet && isatty(STDERR_FILENO) != 0;
   if (o.viewer.client.discard && o.simulate == 0) fail(Exit::usage, "--discard is for --simulate");

@@ -213,8 +213,12 @@ std::optional<Turn> NatsPublisher::stand_by(
 }
 
 void NatsPublisher::remark(const std::string& text) {
-  if (!remarked_.insert(text).second) return;
   remarks_ += (remarks_.empty() ? "" : "; ") + text;
+}
+
+/// Once, until it is over.
+void NatsPublisher::remark(Fault fault, const std::string& text) {
+  if (faults_.insert(fault).second) remark(text);
 }
 
 std::string NatsPublisher::remarks() { return std::exchange(remarks_, {}); }
@@ -257,46 +261,38 @@ void NatsPublisher::publish(TrackPublisher& tracks) {
     // Headers count, too.
     constexpr std::size_t kHeaders = 4096;
     if (state.max_payload > 0 && sent.data.size() + kHeaders > state.max_payload) {
-      remark(
-          fmt::format("{}: {} bytes are more than the servers take, {}; smaller regions by "
-                      "--region make smaller messages, max_payload in their configuration "
-                      "allows larger ones",
-                      tools::printable(sent.subject), sent.data.size(), state.max_payload));
+      remark(Fault::too_large,
+             fmt::format("{}: {} bytes are more than the servers take, {}; smaller regions by "
+                         "--region make smaller messages, max_payload in their configuration "
+                         "allows larger ones",
+                         tools::printable(sent.subject), sent.data.size(), state.max_payload));
       continue;
     }
     if (message.type != TrackMessage::Type::tick) {
       const std::uint64_t number = ++requests_;
       sent.headers.emplace_back("Nats-Msg-Id", fmt::format("{}-{}", epoch_, number));
       sent.reply = fmt::format("{}.{}", connection_->inbox(), number);
-      // Of each subject only the last message is kept.
-      std::erase_if(unanswered_, [&](const Unanswered& one) {
-        const bool same = one.message.subject == sent.subject;
-        if (same) unanswered_bytes_ -= one.message.data.size();
-        return same;
-      });
-      unanswered_.push_back({number, sent, now(), now()});
-      unanswered_bytes_ += sent.data.size();
+      unanswered_.add(number, sent, now());
     }
     if (!connection_->publish(std::move(sent)))
-      remark("the servers take messages more slowly than they come");
+      remark(Fault::slow, "the servers take messages more slowly than they come");
   }
 }
 
 void NatsPublisher::answered(const NatsMessage& message) {
-  const auto found = std::ranges::find(unanswered_, number_of_answer(message), &Unanswered::number);
-  if (found == unanswered_.end()) return;
   const StreamAnswer answer = stream_answer(message);
   if (answer.error != 0) {
     // It is repeated.
-    remark(fmt::format("JetStream does not store messages: {}", tools::printable(answer.text)));
+    remark(
+        Fault::not_stored,
+        fmt::format("JetStream does not store messages: {}; viewers that come now wait; "
+                    "max_memory_store in the servers' configuration gives it more, --nats-max-mb "
+                    "asks for less",
+                    tools::printable(answer.text)));
     return;
   }
-  if (!remarked_.empty() && remarks_.empty()) {
-    remarked_.clear();
-    remarks_ = "JetStream stores messages again";
-  }
-  unanswered_bytes_ -= found->message.data.size();
-  unanswered_.erase(found);
+  if (!unanswered_.remove(number_of_answer(message))) return;
+  if (faults_.erase(Fault::not_stored) != 0) remark("JetStream stores messages again");
 }
 
 void NatsPublisher::handle(const NatsMessage& message, TrackPublisher& tracks) {
@@ -312,24 +308,16 @@ void NatsPublisher::handle(const NatsMessage& message, TrackPublisher& tracks) {
 /// Repeats what was not answered, and gives up what is too old.
 void NatsPublisher::repeat(TrackPublisher& tracks) {
   const double at = now();
-  bool lost = false;
-  while (!unanswered_.empty() &&
-         (at - unanswered_.front().first > kGiveUp || unanswered_bytes_ > kMaxUnanswered)) {
-    unanswered_bytes_ -= unanswered_.front().message.data.size();
-    unanswered_.pop_front();
-    lost = true;
-  }
+  const bool lost = unanswered_.give_up(at - kGiveUp, kMaxUnanswered);
   // Not more often: a server that stores nothing would cause snapshots with every update.
   if (lost && at - gave_up_ > kGiveUp) {
     gave_up_ = at;
     tracks.repeat_snapshots();
   }
-  for (Unanswered& one : unanswered_) {
-    if (at - one.last < kRepeat) continue;
-    one.last = at;
-    NatsMessage again = one.message;
-    if (!connection_->publish(std::move(again))) break;
-  }
+  unanswered_.repeat(at - kRepeat, at, [this](const NatsMessage& message) {
+    NatsMessage again = message;
+    return connection_->publish(std::move(again));
+  });
 }
 
 /// After a loss of the connection somebody else may publish, and servers that began anew have
@@ -359,9 +347,8 @@ void NatsPublisher::resume(const NatsMessage& last, TrackPublisher& tracks) {
     claim.data = text_message(fmt::format("{}", epoch_));
     static_cast<void>(connection_->publish(std::move(claim)));
   }
-  remarked_.clear();
+  faults_.clear();
   remark("NATS is reached again");
-  remarked_.clear();
   tracks.repeat_snapshots();
 }
 
@@ -370,7 +357,7 @@ bool NatsPublisher::attend(TrackPublisher& tracks) {
   while (connection_->next(message, 0)) handle(message, tracks);
   const tools::NatsState state = connection_->state();
   if (!state.connected) {
-    remark(fmt::format("NATS is not reached: {}", nats_failure(state)));
+    remark(Fault::not_reached, fmt::format("NATS is not reached: {}", nats_failure(state)));
   } else if (state.connections != connections_) {
     ask_to_resume(state.connections);
   } else {

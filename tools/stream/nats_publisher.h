@@ -2,11 +2,11 @@
 #pragma once
 
 #include "nats_tracks.h"
+#include "nats_unanswered.h"
 
 #include <gicodec/track_publisher.h>
 
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -54,11 +54,6 @@ class NatsPublisher {
   [[nodiscard]] std::size_t max_payload() { return connection_->state().max_payload; }
 
  private:
-  struct Unanswered {
-    std::uint64_t number = 0;
-    tools::NatsMessage message;
-    double first = 0, last = 0;  ///< when it was published
-  };
   [[nodiscard]] tools::NatsMessage ask(const tools::NatsMessage& request, const char* what);
   [[nodiscard]] std::optional<tools::NatsMessage> answer_to(const tools::NatsMessage& request,
                                                             double seconds);
@@ -70,7 +65,9 @@ class NatsPublisher {
   void resume(const tools::NatsMessage& last, TrackPublisher& tracks);
   void answered(const tools::NatsMessage& message);
   void repeat(TrackPublisher& tracks);
+  enum class Fault : std::uint8_t { not_reached, not_stored, too_large, slow };
   void remark(const std::string& text);
+  void remark(Fault fault, const std::string& text);
 
   NatsPublisherOptions options_;
   TrackSubjects subjects_;
@@ -80,11 +77,10 @@ class NatsPublisher {
   std::uint64_t epoch_ = 0, connections_ = 0;
   std::uint64_t resume_request_ = 0, resumed_connections_ = 0;  ///< asked after a loss
   double asked_ = 0;
-  std::deque<Unanswered> unanswered_;
-  std::size_t unanswered_bytes_ = 0;
+  UnansweredMessages unanswered_;
   double gave_up_ = 0;  ///< when messages were last given up
   bool replaced_ = false;
-  std::set<std::string> remarked_;  ///< faults that are not over
+  std::set<Fault> faults_;  ///< that were said and are not over
   std::string remarks_;
 };
 

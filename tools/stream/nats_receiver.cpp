@@ -17,17 +17,12 @@ using tools::NatsMessage;
 /// Messages taken at once, before the client gets what they make.
 constexpr int kMaxAtOnce = 4096;
 
-TrackReceiver make_receiver(float reach) {
-  TrackReceiverOptions options;
-  options.reach = reach;
-  return tools::take(TrackReceiver::create(options), "--reach");
-}
-
 }  // namespace
 
-NatsReceiver::NatsReceiver(const NatsFlags& flags, float reach, double timeout)
+NatsReceiver::NatsReceiver(const NatsFlags& flags, const TrackReceiverOptions& options,
+                           double timeout)
     : subjects_(flags.prefix),
-      tracks_(make_receiver(reach)),
+      tracks_(tools::take(TrackReceiver::create(options), "--reach")),
       connection_(open_nats(flags, "gi-client", timeout)),
       timeout_(timeout),
       lost_(now()) {

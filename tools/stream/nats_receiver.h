@@ -19,7 +19,7 @@ namespace gicodec::streaming {
 /// One thread; throws tools::Error.
 class NatsReceiver {
  public:
-  NatsReceiver(const NatsFlags& flags, float reach, double timeout);
+  NatsReceiver(const NatsFlags& flags, const TrackReceiverOptions& options, double timeout);
 
   /// The next event, waiting for at most so long: `opened`, `received`, `renewed` or `closed`.
   [[nodiscard]] bool next(NetEvent& event, unsigned milliseconds);

@@ -32,7 +32,7 @@ Net::Net(Via via, const NetOptions& options) {
 Link Net::connect(const Address& address) {
   if (address.via == Via::enet) return {enet_->connect(address)};
   if (address.via != Via::nats) return {nullptr, web_->connect(address)};
-  nats_.push_back(std::make_unique<NatsReceiver>(options_.nats, options_.reach, options_.timeout));
+  nats_.push_back(std::make_unique<NatsReceiver>(options_.nats, options_.tracks, options_.timeout));
   return {nullptr, nullptr, nats_.back().get()};
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <gicodec/protocol.h>
+#include <gicodec/track_receiver.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -97,8 +98,8 @@ struct NetOptions {
   double timeout = 5;       ///< seconds without an answer after which a link counts as lost
   double open_timeout = 5;  ///< seconds in which a link must open
   Trust trust;
-  NatsFlags nats;   ///< to connect to
-  float reach = 0;  ///< see TrackReceiverOptions
+  NatsFlags nats;                    ///< to connect to
+  TrackReceiverOptions tracks = {};  ///< what to receive over it
 };
 
 /// The address for WebSockets, certificate and metrics.

@@ -416,7 +416,8 @@ export const trackMessage = {size: 32, fields: {
 export const trackReceiverOptions = {size: 32, fields: {
   structSize: [0, 'Uint32', 1],
   reach: [4, 'Float32', 1],
-  maxTracks: [8, 'Uint32', 1],
+  subscribedOnly: [8, 'Uint32', 1],
+  maxTracks: [12, 'Uint32', 1],
   maxWaitingBytes: [16, 'BigUint64', 1],
   host: [24, 'Uint32', 1],
 }};

@@ -12,7 +12,7 @@ export class TrackReceiver {
 
   /** @internal */
   static async create(module, options = {}) {
-    checkOptions(options, ['reach', 'maxTracks', 'maxWaitingBytes']);
+    checkOptions(options, ['reach', 'subscribedOnly', 'maxTracks', 'maxWaitingBytes']);
     const instance = await module.create();
     const receiver = new TrackReceiver();
     receiver.#instance = instance;

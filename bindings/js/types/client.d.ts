@@ -126,6 +126,8 @@ export interface TrackReceiverOptions {
    * all of them, or those of client.subscribe().
    */
   reach?: number;
+  /** True: nothing but the regions of client.subscribe(). */
+  subscribedOnly?: boolean;
   maxTracks?: number;
   maxWaitingBytes?: number;
 }
@@ -175,6 +177,7 @@ export interface NatsOptions extends Omit<ClientOptions, 'delivery' | 'token'> {
   prefix?: string;
   /** See TrackReceiverOptions. */
   reach?: number;
+  subscribedOnly?: boolean;
   /** Called after each update of what the client holds. */
   onUpdate?(client: Client): void;
   /** Called when the connection was lost, which makes itself anew; the client keeps the last state. */

@@ -450,6 +450,7 @@ class gicodec_track_receiver_options(ctypes.Structure):
     _fields_ = [
         ("struct_size", ctypes.c_uint32),
         ("reach", ctypes.c_float),
+        ("subscribed_only", ctypes.c_uint32),
         ("max_tracks", ctypes.c_uint32),
         ("max_waiting_bytes", ctypes.c_uint64),
         ("host", ctypes.c_void_p),

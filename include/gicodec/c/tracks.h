@@ -85,6 +85,7 @@ typedef struct gicodec_track_receiver_options {
   /// Distance from the viewpoint, in world units, up to which regions of grids are received, the
   /// nearest first. 0: all of them, or those that the client subscribed to.
   float reach;
+  uint32_t subscribed_only;    ///< not 0: nothing but the regions that the client subscribed to
   uint32_t max_tracks;         ///< of a list; 0: 131,072
   uint64_t max_waiting_bytes;  ///< of objects that wait for others; 0: 256 MiB
   const gicodec_host* host;    ///< NULL: operator new

@@ -20,6 +20,7 @@ Result<TrackReceiver> TrackReceiver::create(const TrackReceiverOptions& options)
     auto state = std::make_unique<State>();
     state->options = options;
     state->interest.reach = options.reach;
+    state->interest.subscribed_only = options.subscribed_only;
     return TrackReceiver(std::move(state));
   });
 }
@@ -71,14 +72,18 @@ Status TrackReceiver::State::take(TrackList list) {
   } else {
     auto made = TrackTable::create(std::move(list), options);
     if (!made) return made.status();
-    if (table && table->list().epoch == made->list().epoch) interest.blocks.clear();
+    TrackInterest next = interest;
+    if (table && table->list().epoch == made->list().epoch) next.blocks.clear();
+    const bool chosen = made->choose(next);
+    // From here on nothing can fail.
+    interest = std::move(next);
     restarts = restarts || welcomed;
     welcomed = false;
     table = *std::move(made);
     tick.reset();
     ticks = ticks_before = 0;
     waiting_bytes = 0;
-    choose();
+    if (chosen) chose();
   }
   wants_list = false;
   lists_missed = 0;
@@ -135,6 +140,7 @@ Status TrackReceiver::State::take(TrackTick said) {
   table->scroll(said.scrolls);
   tick = std::move(said);
   ++ticks;
+  requests_left = kMaxRequests;
   new_tick = has_news = true;
   return Status::ok;
 }
@@ -184,11 +190,12 @@ Status TrackReceiver::State::answer(const Hello& hello) {
 
 Status TrackReceiver::State::answer(const Resync& resync) {
   if (!sync || resync.sync <= *sync) return Status::ok;
+  std::map<StreamId, HeldState> held;
+  for (const HeldState& state : resync.held) held.emplace(state.stream, state);
+  // From here on nothing can fail.
   sync = resync.sync;
   number = 0;
   if (!table) return Status::ok;
-  std::map<StreamId, HeldState> held;
-  for (const HeldState& state : resync.held) held.emplace(state.stream, state);
   for (TrackUnit& unit : table->units()) {
     for (Track& track : unit.tracks) {
       const auto found = held.find(track.stream);
@@ -196,7 +203,7 @@ Status TrackReceiver::State::answer(const Resync& resync) {
                        found->second.checksum == track.sent.checksum;
       if (has || track.at == 0) continue;
       track.forget_held();
-      unit.asks = unit.wanted;
+      for (Track& any : unit.tracks) any.asks = unit.wanted;
     }
   }
   has_news = new_tick = true;  // The client waits for an update of the sync point.
@@ -210,14 +217,20 @@ Status TrackReceiver::State::answer(const Subscribe& subscribe) {
   const auto& blocks = subscribe.blocks;
   if (!blocks.empty() && blocks.size() != table->blocks(*volume, subscribe.group))
     return Status::invalid_argument;
-  interest.blocks[{subscribe.volume, subscribe.group}] = blocks;
-  choose();
+  TrackInterest next = interest;
+  next.blocks[{subscribe.volume, subscribe.group}] = blocks;
+  choose(std::move(next));
   return Status::ok;
 }
 
 Status TrackReceiver::State::answer(const Viewpoint& viewpoint) {
-  interest.viewpoint = viewpoint;
-  if (table && interest.reach > 0) choose();
+  TrackInterest next = interest;
+  next.viewpoint = viewpoint;
+  if (next.reach > 0) {
+    choose(std::move(next));
+  } else {
+    interest = std::move(next);
+  }
   return Status::ok;
 }
 
@@ -232,8 +245,13 @@ Status TrackReceiver::State::answer(const Goodbye& /*unused*/) {
   return Status::ok;
 }
 
-void TrackReceiver::State::choose() {
-  if (!table->choose(interest)) return;
+void TrackReceiver::State::choose(TrackInterest next) {
+  const bool changed = table && table->choose(next);
+  interest = std::move(next);
+  if (changed) chose();
+}
+
+void TrackReceiver::State::chose() noexcept {
   ++changes;
   count_waiting();
   has_news = new_tick = true;
@@ -271,12 +289,15 @@ Result<TrackRequests> TrackReceiver::take_requests() {
     TrackRequests requests;
     // Without a tick it is not known what there is.
     const auto wanted_now = s.tick ? wanted() : std::span<const StreamId>();
-    for (const StreamId stream : wanted_now) {
-      const auto [unit, track] = s.table->find(stream);
-      if (unit->asks) s.request(*unit, *track, requests.objects);
+    std::size_t asked = 0;
+    for (; asked < wanted_now.size() && requests.objects.size() < s.requests_left; ++asked) {
+      const auto [unit, track] = s.table->find(wanted_now[asked]);
+      if (track->asks) s.request(*unit, *track, requests.objects);
     }
     // From here on nothing can fail.
-    for (const StreamId stream : wanted_now) s.table->find(stream).first->asks = false;
+    for (const StreamId stream : wanted_now.first(asked))
+      s.table->find(stream).second->asks = false;
+    s.requests_left -= std::min(s.requests_left, requests.objects.size());
     requests.list = std::exchange(s.wants_list, false);
     s.statistics.requests += requests.objects.size();
     return requests;

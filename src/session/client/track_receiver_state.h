@@ -18,6 +18,9 @@ inline constexpr std::uint32_t kFirstPatience = 2, kLastPatience = 16;
 /// Ticks for which a client that begins waits until all that it wants has come.
 inline constexpr std::uint32_t kFirstTicks = 10;
 
+/// Objects that are requested after a tick, but for the last track's.
+inline constexpr std::size_t kMaxRequests = 8192;
+
 /// Memory that an object takes while it waits.
 [[nodiscard]] inline std::size_t memory_of(const WaitingObject& waiting) noexcept {
   constexpr std::size_t kObject = 256;
@@ -62,7 +65,8 @@ struct TrackReceiver::State {
     return Status::invalid_argument;
   }
   [[nodiscard]] int compare_run(std::uint64_t epoch, std::uint32_t generation) noexcept;
-  void choose();
+  void choose(TrackInterest next);
+  void chose() noexcept;
   void request(const TrackUnit& unit, const Track& track,
                std::vector<TrackRequests::Object>& out) const;
   void count_waiting() noexcept;
@@ -71,6 +75,8 @@ struct TrackReceiver::State {
   [[nodiscard]] TrackWay way_of(const Track& track) const noexcept;
   [[nodiscard]] static std::uint64_t reach_from(const Track& track, std::uint64_t from,
                                                 std::uint64_t last) noexcept;
+  [[nodiscard]] bool follow_presence(const TrackUnit& unit,
+                                     std::vector<TrackWay>& ways) const noexcept;
   void add_steps(Track& track, const TrackWay& way, std::vector<TrackStep>& steps) const;
   Status welcome(std::vector<Message>& out);
   Status advance(std::vector<Message>& out);
@@ -95,6 +101,7 @@ struct TrackReceiver::State {
   bool all = false;                   ///< see complete()
   std::uint64_t changes = 0;          ///< of the wanted tracks
   std::size_t waiting_bytes = 0;
+  std::size_t requests_left = 0;
   TrackReceiverStatistics statistics;
 };
 

@@ -2,6 +2,7 @@
 
 #include "bitstream/description.h"
 #include "session/client/client_limits.h"
+#include "texture/cells.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,14 +13,21 @@ namespace {
 /// A unit is dropped at this multiple of the reach, so that none comes and goes at its edge.
 constexpr float kFar = 1.25F;
 
-/// The least distance along an axis between `eye` and blocks first..first+count-1 of that axis,
-/// which are `stride` blocks apart.
-float distance_along(const VolumeGeometry& geometry, std::size_t axis, std::uint32_t stride,
-                     std::uint32_t first, std::uint32_t count, float eye) noexcept {
-  float least = INFINITY;
-  for (std::uint32_t i = first; i < first + count; ++i)
-    least = std::min(least, std::fabs(block_position(geometry, i * stride)[axis] - eye));
-  return least;
+/// The distance along an axis between `eye` and what blocks `first`..`first` + `count` - 1 light:
+/// they are mixed with their neighbours up to these.
+float distance_along(const VolumeGeometry& geometry, std::size_t axis, std::uint32_t first,
+                     std::uint32_t count, float eye) noexcept {
+  const float origin = geometry.origin[axis], spacing = geometry.spacing[axis];
+  const auto distance = [&](std::int64_t from, std::int64_t to) {
+    const float least = origin + static_cast<float>(from - 1) * spacing;
+    const float most = origin + static_cast<float>(to + 1) * spacing;
+    return std::max({least - eye, eye - most, 0.0F});
+  };
+  const std::int64_t lowest = geometry.scroll[axis], side = sides(geometry.grid)[axis];
+  const std::int64_t from = cell_at(first, geometry.scroll[axis], sides(geometry.grid)[axis]);
+  const std::int64_t to = from + count - 1, highest = lowest + side - 1;
+  if (to <= highest) return distance(from, to);
+  return std::min(distance(from, highest), distance(lowest, to - side));  // scrolled
 }
 
 }  // namespace
@@ -126,22 +134,33 @@ std::optional<TrackName> TrackTable::name(StreamId stream) const noexcept {
                    regions_of(texture.desc, said.region).place_of(stream.region)};
 }
 
+std::optional<std::uint32_t> TrackTable::presence_of(StreamId stream) const noexcept {
+  const auto v = volume(stream.volume);
+  if (!v) return std::nullopt;
+  const auto [group, first] = group_of(volumes_[*v], stream.texture);
+  if (group->presence == TextureGroup::kNone) return std::nullopt;
+  const auto presence = static_cast<std::uint8_t>(first + group->presence);
+  if (presence == stream.texture) return std::nullopt;
+  const auto found = places_.find({stream.volume, presence, stream.region});
+  if (found == places_.end()) return std::nullopt;
+  return found->second.second;
+}
+
 void TrackTable::scroll(std::span<const Scroll> scrolls) noexcept {
   for (std::size_t v = 0; v < std::min(scrolls.size(), list_.volumes.size()); ++v)
     list_.volumes[v].geometry.scroll = scrolls[v];
 }
 
-/// From the nearest block of the unit's region. 0 in pools, which have no places.
+/// From what the unit's region lights. 0 in pools, which have no places.
 float TrackTable::distance(const TrackUnit& unit, const Position& eye) const noexcept {
   const VolumeGeometry& geometry = list_.volumes[unit.volume].geometry;
   const TextureDesc& desc = volumes_[unit.volume].groups[unit.group].textures.front().desc;
   if (unit.whole || desc.space != Space::grid || !(desc.grid == geometry.grid)) return 0;
   const RegionGrid cut = regions_of(desc, list_.volumes[unit.volume].region);
   const Grid first = cut.first_of(unit.region), size = cut.grid_of(unit.region);
-  const float x = distance_along(geometry, 0, 1, first.x, size.x, eye[0]);
-  const float y = distance_along(geometry, 1, desc.grid.x, first.y, size.y, eye[1]);
-  const float z = distance_along(geometry, 2, desc.grid.x * desc.grid.y, first.z, size.z, eye[2]);
-  return std::hypot(x, y, z);
+  return std::hypot(distance_along(geometry, 0, first.x, size.x, eye[0]),
+                    distance_along(geometry, 1, first.y, size.y, eye[1]),
+                    distance_along(geometry, 2, first.z, size.z, eye[2]));
 }
 
 /// By the client's choice of blocks, or by distance. Needs unit.distance.
@@ -156,7 +175,7 @@ bool TrackTable::is_chosen(const TrackUnit& unit, const TrackInterest& interest)
                     std::any_of(mask->second.begin(), mask->second.end(),
                                 [](std::uint8_t block) { return block != 0; }));
     }
-    return any || !all_chosen;
+    return any || (!all_chosen && !interest.subscribed_only);
   }
   const auto mask = interest.blocks.find({id, unit.group});
   if (mask != interest.blocks.end()) {
@@ -166,6 +185,7 @@ bool TrackTable::is_chosen(const TrackUnit& unit, const TrackInterest& interest)
       return block < mask->second.size() && mask->second[block] != 0;
     });
   }
+  if (interest.subscribed_only) return false;
   if (interest.reach <= 0) return true;
   return interest.viewpoint && unit.distance <= interest.reach * (unit.wanted ? kFar : 1);
 }
@@ -183,11 +203,12 @@ bool TrackTable::choose(const TrackInterest& interest) {
     if (wanted) chosen.push_back(&unit);
     if (wanted == unit.wanted) continue;
     changed = true;
-    unit.wanted = unit.asks = wanted;
+    unit.wanted = wanted;
     unit.behind = 0;
     for (Track& track : unit.tracks) {
       track.forget_held();
       track.forget_waiting();
+      track.asks = wanted;
     }
   }
   if (!changed) return false;

@@ -26,6 +26,7 @@ struct Track {
   std::uint32_t number = 0;     ///< of that object
   std::uint64_t confirmed = 0;  ///< the last tick as of which the client had all of the track
   std::uint64_t snapshot = 0;   ///< update of the last one, by the list; 0: there is none
+  bool asks = false;            ///< objects are to be requested
   HeldState sent = {};          ///< that the client holds after that object
   std::optional<WaitingObject> newest_snapshot;
   std::map<std::uint64_t, WaitingObject> updates;  ///< by their updates
@@ -44,7 +45,6 @@ struct TrackUnit {
   bool wanted = false;
   float distance = 0;        ///< from the viewpoint
   std::uint32_t behind = 0;  ///< ticks since something was missing
-  bool asks = false;         ///< objects are to be requested
   std::vector<Track> tracks = {};
 };
 
@@ -53,6 +53,7 @@ struct TrackInterest {
   std::map<std::pair<std::uint16_t, std::uint8_t>, BlockMask> blocks;  ///< by volume and group
   std::optional<Viewpoint> viewpoint;
   float reach = 0;
+  bool subscribed_only = false;
 };
 
 class TrackTable {
@@ -70,6 +71,9 @@ class TrackTable {
   /// Null for a stream that does not exist.
   [[nodiscard]] std::pair<TrackUnit*, Track*> find(StreamId stream) noexcept;
   [[nodiscard]] std::optional<TrackName> name(StreamId stream) const noexcept;
+  /// The index in its unit of the track that has the presence of this one's records; nullopt: none
+  /// has.
+  [[nodiscard]] std::optional<std::uint32_t> presence_of(StreamId stream) const noexcept;
   /// The index in list().volumes; nullopt if there is none of that number.
   [[nodiscard]] std::optional<std::size_t> volume(std::uint16_t id) const noexcept;
   [[nodiscard]] std::uint32_t blocks(std::size_t volume, std::uint8_t group) const noexcept;

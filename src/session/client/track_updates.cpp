@@ -60,6 +60,26 @@ TrackWay TrackReceiver::State::way_of(const Track& track) const noexcept {
   return {reach_from(track, snapshot, tick->update), true};
 }
 
+/// A packet is read with the presence of its update. Where presence goes by its snapshot, what it
+/// was before is unknown, and the other tracks need snapshots, too. False if they lack them.
+bool TrackReceiver::State::follow_presence(const TrackUnit& unit,
+                                           std::vector<TrackWay>& ways) const noexcept {
+  for (std::size_t t = 0; t < ways.size(); ++t) {
+    const Track& track = unit.tracks[t];
+    const auto presence = table->presence_of(track.stream);
+    if (!presence || !ways[*presence].by_snapshot || ways[t].end == track.at) continue;
+    const std::uint64_t known = unit.tracks[*presence].newest_snapshot->object.update;
+    const std::uint64_t snapshot = track.newest_snapshot ? track.newest_snapshot->object.update : 0;
+    const auto next = track.updates.upper_bound(track.at);
+    const bool follows = ways[t].by_snapshot ? snapshot >= known
+                                             : next == track.updates.end() || next->first >= known;
+    if (follows) continue;
+    if (snapshot < known || snapshot > tick->update) return false;
+    ways[t] = {reach_from(track, snapshot, tick->update), true};
+  }
+  return true;
+}
+
 void TrackReceiver::State::add_steps(Track& track, const TrackWay& way,
                                      std::vector<TrackStep>& steps) const {
   std::uint64_t at = track.at;
@@ -103,7 +123,7 @@ Status TrackReceiver::State::advance(std::vector<Message>& out) {
     if (!unit.wanted) continue;
     std::vector<TrackWay> ways;
     for (const Track& track : unit.tracks) ways.push_back(way_of(track));
-    bool has = true;
+    bool has = follow_presence(unit, ways);
     for (std::size_t t = 0; t < ways.size(); ++t) has = has && has_all(unit.tracks[t], ways[t].end);
     if (!has) {
       all = false;
@@ -111,7 +131,7 @@ Status TrackReceiver::State::advance(std::vector<Message>& out) {
       ++unit.behind;
       std::uint32_t patience = kFirstPatience;
       while (patience < kLastPatience && unit.behind > patience) patience *= 2;
-      unit.asks = unit.asks || unit.behind % patience == 0;
+      for (Track& track : unit.tracks) track.asks = track.asks || unit.behind % patience == 0;
       continue;
     }
     for (std::size_t t = 0; t < ways.size(); ++t) add_steps(unit.tracks[t], ways[t], steps);
@@ -126,18 +146,12 @@ Status TrackReceiver::State::advance(std::vector<Message>& out) {
     return std::pair(a.waiting->object.update, a.track->stream) <
            std::pair(b.waiting->object.update, b.track->stream);
   });
-  const std::uint32_t before = number;
-  const std::size_t messages = out.size();
   for (std::size_t first = 0; first < steps.size() || (first == 0 && new_tick);) {
     std::size_t end = first, bytes = 0;
     while (end < steps.size() && (end == first || bytes < kUpdateBytes))
       bytes += steps[end++].waiting->bytes.size();
     const Status written = write(std::span(steps).subspan(first, end - first), out);
-    if (written != Status::ok) {
-      number = before;
-      out.resize(messages);
-      return written;
-    }
+    if (written != Status::ok) return written;
     if (end == first) break;
     first = end;
   }
@@ -153,9 +167,9 @@ Status TrackReceiver::State::advance(std::vector<Message>& out) {
   }
   for (const auto& [unit, ways] : forward) {
     unit->behind = 0;
-    unit->asks = false;
     for (std::size_t t = 0; t < ways.size(); ++t) {
       Track& track = unit->tracks[t];
+      track.asks = false;
       track.at = ways[t].end;
       track.confirmed = tick->update;
       if (track.newest_snapshot && track.newest_snapshot->object.update <= track.at) {
@@ -190,16 +204,20 @@ Result<std::vector<Message>> TrackReceiver::take_messages() {
     State& s = *state_;
     std::vector<Message> out;
     if (!s.sync || !s.table || !s.has_news) return out;
-    if (!s.welcomed && !s.restarts) {
-      const Status welcomed = s.welcome(out);
-      if (welcomed != Status::ok) return welcomed;
-    }
-    if (!s.tick) return out;
-    const Status advanced = s.advance(out);
-    if (advanced == Status::ok) return out;
-    // The Welcome is made again, too.
-    if (!out.empty()) s.welcomed = false;
-    return advanced;
+    const bool welcomed = s.welcomed;
+    const std::uint32_t number = s.number;
+    const Status made = guarded([&]() -> Status {
+      if (!welcomed && !s.restarts) {
+        const Status status = s.welcome(out);
+        if (status != Status::ok) return status;
+      }
+      return s.tick ? s.advance(out) : Status::ok;
+    });
+    if (made == Status::ok) return out;
+    // All of it is made again.
+    s.welcomed = welcomed;
+    s.number = number;
+    return made;
   });
 }
 
