@@ -67,6 +67,7 @@ struct TrackPublisher::State {
   [[nodiscard]] bool round_is_due(double now) const noexcept;
   void begin_round(double now);
   void end_round();
+  void begin_again() noexcept;
   void forget_removed();
   void add_message(TrackMessage::Type type, const AnyMessage& message);
   void add_object(ClientId client, StreamId stream,
@@ -178,6 +179,15 @@ void TrackPublisher::State::end_round() {
   add_list();
 }
 
+/// After packets that could not be published: all is published anew.
+void TrackPublisher::State::begin_again() noexcept {
+  if (!messages.empty() && messages.back().bytes.empty()) messages.pop_back();
+  for (ClientId* const client : {&all, &newcomer})
+    static_cast<void>(distributor().disconnect(std::exchange(*client, 0)));
+  awaited.clear();
+  first = true;
+}
+
 void TrackPublisher::State::forget_removed() {
   const auto table = distributor().table();
   const auto is_gone = [&](const auto& entry) {
@@ -268,6 +278,11 @@ Status TrackPublisher::update(double now, double time) {
   const std::uint64_t before = s.distributor().updates();
   const Status ready = guarded([&]() -> Status {
     if (s.generation != s.server.state_->generation) s.forget_removed();
+    if (s.all == 0) {
+      const auto all = s.distributor().connect(Delivery::shared);
+      if (!all) return all.status();
+      s.all = *all;
+    }
     if (s.round_is_due(now)) s.begin_round(now);
     return Status::ok;
   });
@@ -289,8 +304,7 @@ Status TrackPublisher::update(double now, double time) {
     s.end_round();
     return Status::ok;
   });
-  // What could not be published is in the next snapshots.
-  if (made != Status::ok) repeat_snapshots();
+  if (made != Status::ok) s.begin_again();
   if (updated != Status::ok) return updated;
   return made == Status::ok ? ready : made;
 }
