@@ -22,7 +22,7 @@ struct TrackReceiverOptions {
   /// Distance from the viewpoint, in world units, up to which regions of grids are received, the
   /// nearest first. 0: all of them, or those of the client's Subscribe.
   float reach = 0;
-  bool subscribed_only = false;  ///< nothing but the regions of the client's Subscribe
+  bool subscribed_only = false;        ///< nothing but the regions of the client's Subscribe
   std::uint32_t max_tracks = 1 << 17;  ///< of a list
   /// Bytes of objects that wait for others. Beyond them the receiver asks for snapshots.
   std::size_t max_waiting_bytes = std::size_t{256} << 20;
@@ -39,8 +39,10 @@ struct TrackRequests {
 };
 
 struct TrackReceiverStatistics {
+  std::uint64_t ticks = 0;     ///< each later than the one before
   std::uint64_t objects = 0;   ///< of wanted tracks, received for the first time
-  std::uint64_t repeated = 0;  ///< received again, or of an earlier epoch
+  std::uint64_t repeated = 0;  ///< received again
+  std::uint64_t earlier = 0;   ///< of an earlier epoch or generation, and ignored
   std::uint64_t damaged = 0;   ///< messages that could not be read
   std::uint64_t requests = 0;  ///< of objects
 };

@@ -118,8 +118,10 @@ gicodec_status gicodec_track_receiver_get_state(const gicodec_track_receiver* re
     state.wants_hello = from.wants_hello() ? 1 : 0;
     state.complete = from.complete() ? 1 : 0;
     state.wanted_changes = from.wanted_changes();
+    state.ticks = statistics.ticks;
     state.objects = statistics.objects;
     state.repeated = statistics.repeated;
+    state.earlier = statistics.earlier;
     state.damaged = statistics.damaged;
     state.requests = statistics.requests;
     return c::give(state, out);

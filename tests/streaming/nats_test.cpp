@@ -40,8 +40,8 @@ TEST(NatsSubjects, EachObjectHasItsOwn) {
   EXPECT_EQ(subjects.object(track, 17), "studio.a.the%2Eworld.color.3.0.12.17");
   EXPECT_EQ(subjects.updates(track), "studio.a.the%2Eworld.color.3.0.12.*");
   EXPECT_EQ(subjects.list(), "studio.a.list");
-  EXPECT_EQ(subjects.kept_stream(), "studio_a-last");
-  EXPECT_EQ(subjects.update_stream(), "studio_a-updates");
+  EXPECT_EQ(subjects.kept_stream(), "studio~a-last");
+  EXPECT_EQ(subjects.update_stream(), "studio~a-updates");
   const auto kept = subjects.kept_subjects(), updates = subjects.update_subjects();
   for (const std::string& subject : updates)
     EXPECT_EQ(std::count(kept.begin(), kept.end(), subject), 0);

@@ -182,6 +182,8 @@ void ClientLink::serve(Net& net, Link link) {
         return;
       }
       if (event.type == NetEvent::Type::renewed && !greet(net, link)) return;
+      if (event.type == NetEvent::Type::remark && !options_.quiet)
+        log_line("gi-client: {}: {}", to_string(options_.server), event.why);
       if (event.type != NetEvent::Type::received) continue;
       const Status status = client_.push(std::move(event.message));
       if (status == Status::limit_exceeded) {

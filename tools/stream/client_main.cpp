@@ -180,7 +180,6 @@ void take_server(ClientFlags& o) {
     o.viewer.link.server = parse_server(o.connect, "--connect");
     return;
   }
-  static_cast<void>(nats_urls(nats.urls, "--nats"));
   if (!nats.password_file.empty()) nats.password = tools::read_token({"", nats.password_file}).text;
   const Budget& budget = o.viewer.client.budget;
   if (budget.blocks > 0 || budget.bytes > 0)

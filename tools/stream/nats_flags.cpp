@@ -1,6 +1,14 @@
 #include "nats_flags.h"
 
 #include "dump/error.h"
+#include "dump/text.h"
+#include "nats_tracks.h"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <utility>
 
 namespace gicodec::streaming {
 
@@ -27,7 +35,17 @@ void check_nats_flags(const NatsFlags& flags) {
   if (flags.user.empty() != flags.password_file.empty())
     tools::fail(tools::Exit::usage,
                 "--nats-user and --nats-password-file belong together; name both");
-  if (!flags.urls.empty()) return;
+  if (!flags.urls.empty()) {
+    static_cast<void>(TrackSubjects(flags.prefix));
+    static_cast<void>(nats_urls(flags.urls, "--nats"));
+    for (const auto& [flag, path] : {std::pair("--nats-ca", flags.ca),
+                                     std::pair("--nats-password-file", flags.password_file)}) {
+      if (!path.empty() && access(path.c_str(), R_OK) != 0)
+        tools::fail(tools::Exit::io, "{} {}: cannot be read: {}", flag, tools::printable(path),
+                    std::strerror(errno));
+    }
+    return;
+  }
   if (!flags.user.empty() || !flags.password_file.empty() || !flags.ca.empty() ||
       flags.prefix != NatsFlags{}.prefix)
     tools::fail(tools::Exit::usage,

@@ -22,7 +22,10 @@ using tools::NatsMessage;
 constexpr double kRepeat = 1;      ///< seconds without an answer after which a message is repeated
 constexpr double kGiveUp = 20;     ///< seconds after which the next snapshots make up for it
 constexpr double kAskSeconds = 5;  ///< for one request at the beginning
-constexpr double kResume = 0.5;    ///< seconds between tries after a loss of the connection
+constexpr double kResume = 0.5;    ///< seconds after an answer that servers are not ready
+constexpr const char* kFullCure =
+    "max_memory_store in the servers' configuration gives it more room, --nats-max-mb asks for "
+    "less";
 constexpr std::size_t kMaxUnanswered = std::size_t{256} << 20;  ///< bytes
 
 Message text_message(const std::string& text) {
@@ -67,9 +70,14 @@ NatsPublisher::NatsPublisher(const NatsPublisherOptions& options)
 }
 
 void NatsPublisher::wait_for_servers() {
-  const double end = now() + options_.patience;
+  const double began = now(), end = began + options_.patience;
+  bool said = false;
   while (!tools::interrupted()) {
     const tools::NatsState state = connection_->state();
+    if (!state.connected && !said && now() > began + options_.timeout) {
+      log_line("gi-server: waiting for --nats {}: {}", options_.nats.urls, nats_failure(state));
+      said = true;
+    }
     if (state.connected) {
       connections_ = state.connections;
       return;
@@ -94,6 +102,13 @@ std::optional<NatsMessage> NatsPublisher::answer_to(const NatsMessage& request, 
   return std::nullopt;
 }
 
+/// Servers do not answer what a user may not ask: they say so apart.
+void NatsPublisher::check_rights(const char* what) {
+  const tools::NatsState state = connection_->state();
+  if (is_refused(state))
+    fail(Exit::io, "--nats {}: {}: {}", options_.nats.urls, what, nats_failure(state));
+}
+
 /// The same, which must come.
 NatsMessage NatsPublisher::ask(const NatsMessage& request, const char* what) {
   const double end = now() + options_.patience;
@@ -103,10 +118,9 @@ NatsMessage NatsPublisher::ask(const NatsMessage& request, const char* what) {
     const bool answered =
         answer && answer->status != "503" && stream_answer(*answer).error != kErrorNoLeader;
     if (answered) return *std::move(answer);
+    check_rights(what);
     if (now() > end)
-      fail(Exit::io,
-           "--nats {}: {}: no server with JetStream answers; start nats-server with -js, and give "
-           "this user the right to publish to $JS.API.>",
+      fail(Exit::io, "--nats {}: {}: no server with JetStream answers; start nats-server with -js",
            options_.nats.urls, what);
     NatsMessage ignored;
     static_cast<void>(connection_->next(ignored, 100));
@@ -126,8 +140,8 @@ void NatsPublisher::make_streams() {
       if (answer.error == 0) return;
       if (answer.error == kErrorNoStream && exists) continue;
       fail(Exit::io,
-           "--nats {}: JetStream refuses to keep {}: {}; --nats-replicas and "
-           "--nats-max-mb say how much it is asked for",
+           "--nats {}: JetStream refuses to keep {}: {}; --nats-replicas and --nats-max-mb say how "
+           "much it is asked for, max_memory_store in the servers' configuration how much it has",
            options_.nats.urls, message.subject.substr(message.subject.rfind('.') + 1),
            tools::printable(answer.text));
     }
@@ -146,11 +160,14 @@ std::optional<Turn> NatsPublisher::claim(bool wait) {
     const auto last =
         answer_to(get_last(subjects_.kept_stream(), subjects_.publisher(), reply()), kAskSeconds);
     if (!last || last->status == "503") {  // Servers that began anew have forgotten all.
+      check_rights("asking who publishes");
       make_streams();
+      if (!last && now() > end)
+        fail(Exit::io, "--nats {}: asking who publishes: no answer", options_.nats.urls);
       continue;
     }
-    if (last->status.empty() && !last->data.empty()) {
-      turn.epoch = std::max(turn.epoch, claimed(*last) + 1);
+    if (last->status.empty()) {
+      turn.epoch = std::max({turn.epoch, claimed(*last) + 1, heard_epoch_ + 1});
       if (claimed(*last) == UINT64_MAX)
         fail(Exit::io,
              "--nats {}: somebody has claimed the last epoch there is; delete the streams {} and "
@@ -174,10 +191,17 @@ std::optional<Turn> NatsPublisher::claim(bool wait) {
       epoch_ = turn.epoch;
       return turn;
     }
-    if (!wait) return std::nullopt;
-    if (now() > end)
-      fail(Exit::io, "--nats {}: JetStream does not store who publishes: {}", options_.nats.urls,
-           tools::printable(stored.text));
+    const std::string why =
+        fmt::format("JetStream does not store who publishes: {}; {}",
+                    stored.text.empty() ? "no answer" : tools::printable(stored.text), kFullCure);
+    if (!wait) {
+      if (faults_.insert(Fault::not_stored).second)
+        log_line("gi-server: cannot take over: {}", why);
+      return std::nullopt;
+    }
+    if (now() > end) fail(Exit::io, "--nats {}: {}", options_.nats.urls, why);
+    NatsMessage ignored;
+    static_cast<void>(connection_->next(ignored, 100));
   }
   return std::nullopt;
 }
@@ -196,7 +220,9 @@ std::optional<Turn> NatsPublisher::stand_by(
       heard = now();
       const auto read = read_message(message.data);
       const auto* const tick = read.ok() ? std::get_if<TrackTick>(&*read) : nullptr;
-      if (tick != nullptr) time = tick->time;
+      if (tick == nullptr) continue;
+      time = tick->time;
+      if (tick->epoch < UINT64_MAX) heard_epoch_ = std::max(heard_epoch_, tick->epoch);
       continue;
     }
     if (time) {
@@ -258,14 +284,15 @@ void NatsPublisher::publish(TrackPublisher& tracks) {
     if (sent.subject.empty()) continue;
     sent.data = message.bytes;
     sent.headers = headers;
-    // Headers count, too.
-    constexpr std::size_t kHeaders = 4096;
-    if (state.max_payload > 0 && sent.data.size() + kHeaders > state.max_payload) {
+    // Headers count, too: "NATS/1.0", a line each, and that which is added below.
+    std::size_t bytes = sent.data.size() + 64;
+    for (const auto& [key, value] : sent.headers) bytes += key.size() + value.size() + 4;
+    if (state.max_payload > 0 && bytes > state.max_payload) {
       remark(Fault::too_large,
              fmt::format("{}: {} bytes are more than the servers take, {}; smaller regions by "
                          "--region make smaller messages, max_payload in their configuration "
                          "allows larger ones",
-                         tools::printable(sent.subject), sent.data.size(), state.max_payload));
+                         tools::printable(sent.subject), bytes, state.max_payload));
       continue;
     }
     if (message.type != TrackMessage::Type::tick) {
@@ -280,18 +307,17 @@ void NatsPublisher::publish(TrackPublisher& tracks) {
 }
 
 void NatsPublisher::answered(const NatsMessage& message) {
+  if (!unanswered_.contains(number_of_answer(message))) return;
   const StreamAnswer answer = stream_answer(message);
   if (answer.error != 0) {
     // It is repeated.
     remark(
         Fault::not_stored,
-        fmt::format("JetStream does not store messages: {}; viewers that come now wait; "
-                    "max_memory_store in the servers' configuration gives it more, --nats-max-mb "
-                    "asks for less",
-                    tools::printable(answer.text)));
+        fmt::format("JetStream does not store messages: {}; viewers that come now wait; {}",
+                    answer.text.empty() ? "no answer" : tools::printable(answer.text), kFullCure));
     return;
   }
-  if (!unanswered_.remove(number_of_answer(message))) return;
+  unanswered_.remove(number_of_answer(message));
   if (faults_.erase(Fault::not_stored) != 0) remark("JetStream stores messages again");
 }
 
@@ -323,7 +349,8 @@ void NatsPublisher::repeat(TrackPublisher& tracks) {
 /// After a loss of the connection somebody else may publish, and servers that began anew have
 /// forgotten all.
 void NatsPublisher::ask_to_resume(std::uint64_t connections) {
-  if (now() - asked_ < kResume) return;
+  const bool waits = resume_request_ != 0 && resumed_connections_ == connections;
+  if (now() - asked_ < (waits ? kAskSeconds : kResume)) return;
   asked_ = now();
   resumed_connections_ = connections;
   resume_request_ = ++requests_;

@@ -57,6 +57,7 @@ class NatsPublisher {
   [[nodiscard]] tools::NatsMessage ask(const tools::NatsMessage& request, const char* what);
   [[nodiscard]] std::optional<tools::NatsMessage> answer_to(const tools::NatsMessage& request,
                                                             double seconds);
+  void check_rights(const char* what);
   void wait_for_servers();
   void make_streams();
   [[nodiscard]] std::optional<Turn> claim(bool wait);
@@ -75,6 +76,7 @@ class NatsPublisher {
   std::uint64_t answers_ = 0, claims_ = 0, ticks_ = 0;  ///< subscriptions
   std::uint64_t requests_ = 0;                          ///< made so far
   std::uint64_t epoch_ = 0, connections_ = 0;
+  std::uint64_t heard_epoch_ = 0;                               ///< while standing by
   std::uint64_t resume_request_ = 0, resumed_connections_ = 0;  ///< asked after a loss
   double asked_ = 0;
   UnansweredMessages unanswered_;

@@ -16,6 +16,8 @@ using tools::NatsMessage;
 
 /// Messages taken at once, before the client gets what they make.
 constexpr int kMaxAtOnce = 4096;
+/// Seconds without a tick after which the user is told.
+constexpr double kSilence = 5;
 
 }  // namespace
 
@@ -25,7 +27,8 @@ NatsReceiver::NatsReceiver(const NatsFlags& flags, const TrackReceiverOptions& o
       tracks_(tools::take(TrackReceiver::create(options), "--reach")),
       connection_(open_nats(flags, "gi-client", timeout)),
       timeout_(timeout),
-      lost_(now()) {
+      lost_(now()),
+      heard_(now()) {
   for (const std::string& subject :
        {connection_->inbox() + ".*", subjects_.list(), subjects_.tick()})
     static_cast<void>(connection_->subscribe(subject));
@@ -45,6 +48,11 @@ void NatsReceiver::watch_connection() {
   if (state.connected) {
     lost_ = 0;
     if (!std::exchange(opened_, true)) push(NetEvent::Type::opened);
+    if (!closed_ && is_refused(state)) {
+      close();
+      events_.back().why = nats_failure(state);
+      events_.back().final = true;
+    }
     return;
   }
   if (lost_ == 0) lost_ = now();
@@ -52,6 +60,34 @@ void NatsReceiver::watch_connection() {
   close();
   events_.back().why = nats_failure(state);
   events_.back().final = state.final && !opened_;
+}
+
+/// Says why there is nothing new.
+void NatsReceiver::watch_publisher() {
+  const TrackReceiverStatistics& seen = tracks_.statistics();
+  if (seen.ticks != ticks_ || lost_ != 0) {
+    const bool again = std::exchange(silent_, false) && seen.ticks != ticks_;
+    ticks_ = seen.ticks;
+    earlier_ = seen.earlier;
+    heard_ = now();
+    if (!again) return;
+    push(NetEvent::Type::remark);
+    events_.back().why = "light is published again";
+  } else if (!silent_ && now() - heard_ > kSilence) {
+    silent_ = true;
+    push(NetEvent::Type::remark);
+    events_.back().why =
+        seen.ticks == 0
+            ? fmt::format(
+                  "nothing is published under {}; gi-server --nats with this --nats-prefix "
+                  "does, over servers with JetStream (nats-server -js)",
+                  subjects_.prefix())
+        : seen.earlier != earlier_
+            ? "what is published now is of an earlier epoch than what came before, and ignored: "
+              "its "
+              "clock is behind; start it anew when the clock is right, or this viewer"
+            : fmt::format("nothing was published for {} s; the last state stays", kSilence);
+  }
 }
 
 bool NatsReceiver::next(NetEvent& event, unsigned milliseconds) {
@@ -65,6 +101,7 @@ bool NatsReceiver::next(NetEvent& event, unsigned milliseconds) {
       if (!more) break;
     }
     watch_connection();
+    watch_publisher();
     if (opened_ && !closed_) {
       auto messages = tracks_.take_messages();
       if (messages) {

@@ -35,6 +35,7 @@ class NatsReceiver {
 
  private:
   void watch_connection();
+  void watch_publisher();
   void handle(const tools::NatsMessage& message);
   void follow_wanted();
   void fetch();
@@ -45,6 +46,9 @@ class NatsReceiver {
   std::unique_ptr<tools::NatsConnection> connection_;
   double timeout_, lost_ = 0;  ///< seconds; when the connection was lost, 0: it is there
   bool opened_ = false, closed_ = false;
+  double heard_ = 0;     ///< when the last tick came
+  bool silent_ = false;  ///< that none comes was said
+  std::uint64_t ticks_ = 0, earlier_ = 0;
   std::uint64_t wanted_changes_ = 0, requests_ = 0;
   std::map<StreamId, std::uint64_t> subscriptions_;  ///< of updates
   std::deque<NetEvent> events_;

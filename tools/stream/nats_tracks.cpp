@@ -107,16 +107,21 @@ std::unique_ptr<tools::NatsConnection> open_nats(const NatsFlags& flags, const c
   return connection;
 }
 
+bool is_refused(const tools::NatsState& state) {
+  return state.failure.find("uthoriz") != std::string::npos ||
+         state.failure.find("ermissions") != std::string::npos;
+}
+
 std::string nats_failure(const tools::NatsState& state) {
   const std::string text = state.failure.empty() ? "no answer" : tools::printable(state.failure);
   const bool tls = state.failure.find("SSL") != std::string::npos ||
                    state.failure.find("certificate") != std::string::npos;
-  const bool rights = state.failure.find("uthoriz") != std::string::npos ||
-                      state.failure.find("ermissions") != std::string::npos;
   return fmt::format("{}{}", text,
-                     tls      ? "; --nats-ca names the authority of its certificate"
-                     : rights ? "; --nats-user and --nats-password-file name a user that may"
-                              : "");
+                     tls ? "; --nats-ca names the authority of its certificate"
+                     : is_refused(state)
+                         ? "; --nats-user and --nats-password-file name a user that may, "
+                           "--nats-prefix a prefix that it may use"
+                         : "");
 }
 
 std::string subject_token(std::string_view name) {
@@ -141,7 +146,7 @@ TrackSubjects::TrackSubjects(const std::string& prefix) : prefix_(prefix) {
          "between, at most {} characters, not \"{}\"",
          kMaxPrefix, tools::printable(prefix));
   std::string name = prefix;
-  std::ranges::replace(name, '.', '_');
+  std::ranges::replace(name, '.', '~');  // which no prefix has
   kept_ = name + "-last";
   updates_ = name + "-updates";
 }

@@ -21,6 +21,8 @@ namespace gicodec::streaming {
 /// Begins to connect. Throws tools::Error of Exit::usage or io.
 [[nodiscard]] std::unique_ptr<tools::NatsConnection> open_nats(const NatsFlags& flags,
                                                                const char* program, double timeout);
+/// True if the user of the connection lacks a right.
+[[nodiscard]] bool is_refused(const tools::NatsState& state);
 /// What a failure to connect means to the user, and the cure. Escaped.
 [[nodiscard]] std::string nats_failure(const tools::NatsState& state);
 
@@ -32,6 +34,7 @@ class TrackSubjects {
   /// Throws tools::Error of Exit::usage for a prefix that makes no subject.
   explicit TrackSubjects(const std::string& prefix);
 
+  [[nodiscard]] const std::string& prefix() const noexcept { return prefix_; }
   /// Of a track's snapshots, number 0, or of its other objects of a number.
   [[nodiscard]] std::string object(const TrackName& track, std::uint32_t number) const;
   /// Of all of a track's objects that are no snapshots.

@@ -21,13 +21,11 @@ class UnansweredMessages {
     bytes_ += message.data.size();
   }
 
-  /// False: there is none of that number.
-  bool remove(std::uint64_t number) {
+  void remove(std::uint64_t number) {
     const auto found = messages_.find(number);
-    if (found == messages_.end()) return false;
+    if (found == messages_.end()) return;
     numbers_.erase(found->second.message.subject);
     drop(found);
-    return true;
   }
 
   /// Drops the oldest, while they are older than that or too many. True if there were any.
@@ -48,6 +46,7 @@ class UnansweredMessages {
     }
   }
 
+  [[nodiscard]] bool contains(std::uint64_t number) const { return messages_.count(number) != 0; }
   [[nodiscard]] std::size_t size() const noexcept { return messages_.size(); }
 
  private:

@@ -47,6 +47,9 @@ std::unique_ptr<NatsPublisher> begin_publishing(ServerFlags& o, Feed& feed) {
   auto nats = std::make_unique<NatsPublisher>(o.nats);
   if (!o.standby) {
     o.server.epoch = nats->begin().epoch;
+    if (!o.service.quiet)
+      log_line("gi-server: publishing over {} under {}; a publisher before this one ends",
+               nats_flags.urls, nats_flags.prefix);
     return nats;
   }
   if (!o.service.quiet) log_line("gi-server: standing by");

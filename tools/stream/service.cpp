@@ -275,6 +275,7 @@ void Service::serve() {
     }
     serve_control();
     attend_tracks();
+    if (replaced_) break;
     take_background();
     const double at = now();
     statistics_.tick(server_, at);

@@ -129,6 +129,7 @@ class Service {
 
   std::unique_ptr<NatsPublisher> nats_;
   std::optional<TrackPublisher> tracks_;  ///< of server_, if nats_ is there
+  bool replaced_ = false;                 ///< another publisher has taken over
 
   Background<FeedRequest, FeedFrame> tracer_;
   Background<double, Status> updater_;  ///< uses the server while it works

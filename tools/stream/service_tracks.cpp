@@ -16,14 +16,14 @@ void Service::publish_tracks() {
   statistics_.published(tracks_->statistics(), nats_->unanswered());
 }
 
-/// Ends the program if another publisher has taken over.
+/// Ends the service if another publisher has taken over.
 void Service::attend_tracks() {
   if (!nats_) return;
   const bool goes_on = nats_->attend(*tracks_);
   if (const std::string remarks = nats_->remarks(); !remarks.empty()) log("{}", remarks);
-  if (!goes_on)
-    tools::fail(tools::Exit::io,
-                "another gi-server publishes under this --nats-prefix now; this one ends");
+  if (goes_on) return;
+  log("another gi-server publishes under this --nats-prefix now; this one ends");
+  replaced_ = true;
 }
 
 }  // namespace gicodec::streaming

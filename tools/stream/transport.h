@@ -54,6 +54,7 @@ struct NetEvent {
   enum class Type : std::uint8_t {
     opened,
     received,
+    remark,   ///< `why` is for people
     renewed,  ///< another publisher is there: the client should say Hello
     broken,   ///< the peer broke a rule of the transport; see reason
     closed,

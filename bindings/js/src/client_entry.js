@@ -29,10 +29,10 @@ export async function connect(url, {onUpdate, onLost, everything, timeout, signa
 }
 
 /** Follows a publisher of tracks over a connection of @nats-io/nats-core. */
-export async function connectNats(nats, {prefix, reach, subscribedOnly, onUpdate, onLost, signal, ...options} = {}) {
+export async function connectNats(nats, {prefix, reach, subscribedOnly, onUpdate, onLost, timeout, signal, ...options} = {}) {
   signal?.throwIfAborted();
   const made = await client.Client.create(module, {...options, delivery: 'shared'});
   const receiver = await TrackReceiver.create({reach, subscribedOnly});
   signal?.throwIfAborted();
-  return new TrackConnection(made, receiver, (on) => new NatsBus(nats, on), {prefix, onUpdate, onLost, signal});
+  return new TrackConnection(made, receiver, (on) => new NatsBus(nats, on), {prefix, onUpdate, onLost, timeout, signal});
 }

@@ -425,13 +425,15 @@ export const trackObject = {size: 16, fields: {
   track: [0, track, 1],
   number: [12, 'Uint32', 1],
 }};
-export const trackReceiverState = {size: 56, fields: {
+export const trackReceiverState = {size: 72, fields: {
   structSize: [0, 'Uint32', 1],
   wantsHello: [4, 'Uint32', 1],
   complete: [8, 'Uint32', 1],
   wantedChanges: [16, 'BigUint64', 1],
-  objects: [24, 'BigUint64', 1],
-  repeated: [32, 'BigUint64', 1],
-  damaged: [40, 'BigUint64', 1],
-  requests: [48, 'BigUint64', 1],
+  ticks: [24, 'BigUint64', 1],
+  objects: [32, 'BigUint64', 1],
+  repeated: [40, 'BigUint64', 1],
+  earlier: [48, 'BigUint64', 1],
+  damaged: [56, 'BigUint64', 1],
+  requests: [64, 'BigUint64', 1],
 }};

@@ -13,22 +13,21 @@ function token(name) {
 
 /** Subjects of a publisher (docs/protocol.md, "Tracks"). */
 export class Subjects {
-  #prefix;
   #stream;
 
   constructor(prefix) {
     if (!/^[\w-]+(\.[\w-]+)*$/.test(prefix) || prefix.length > 64) {
       throw new TypeError('prefix: expected letters, digits, - and _, with single dots between, at most 64 characters');
     }
-    this.#prefix = prefix;
-    this.#stream = prefix.replaceAll('.', '_');
+    this.prefix = prefix;
+    this.#stream = prefix.replaceAll('.', '~');
     this.list = `${prefix}.list`;
     this.tick = `${prefix}.tick`;
   }
 
   /** Of a track's snapshots, number 0, or of its other objects of a number. */
   object({volume, texture, place}, number) {
-    const track = [this.#prefix, token(volume), token(texture), ...place].join('.');
+    const track = [this.prefix, token(volume), token(texture), ...place].join('.');
     return number === 0 ? track : `${track}.${number}`;
   }
 

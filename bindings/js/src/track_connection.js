@@ -1,6 +1,8 @@
 // A client over tracks, which any number of viewers receive from a broker.
 import {Subjects} from './nats.js';
 
+const SILENCE = 5000;  // milliseconds without a tick after which the user is told
+
 /** Follows a publisher: calls onUpdate(client) after what changed what the client holds. */
 export class TrackConnection {
   #receiver;
@@ -10,6 +12,8 @@ export class TrackConnection {
   #followed = new Map();  // tracks by the subject of their updates
   #changes = -1;
   #flushes = false;
+  #seen = {ticks: 0, earlier: 0};
+  #silence = 0;  // a timer
   #ended = false;
   #end;
   #abort;
@@ -34,7 +38,22 @@ export class TrackConnection {
       for (const subject of [this.#subjects.list, this.#subjects.tick]) this.#bus.subscribe(subject);
       receiver.take(client.hello());
       this.#fetch();
+      this.#listen();
     });
+  }
+
+  /** Tells why there is nothing new. */
+  #listen() {
+    const silence = this.#options.timeout ?? SILENCE;
+    clearTimeout(this.#silence);
+    if (silence === 0) return;
+    this.#silence = setTimeout(() => {
+      const {ticks, earlier} = this.#receiver.state;
+      const why = ticks === 0 ? `nothing is published under ${this.#subjects.prefix}: gi-server --nats with that --nats-prefix does`
+        : earlier !== this.#seen.earlier ? 'what is published now is of an earlier epoch, and ignored: the clock of its machine is behind'
+        : `nothing was published for ${silence / 1000} s; the last state stays`;
+      this.#options.onLost?.(0, why);
+    }, silence);
   }
 
   /** All messages that come at once make one update. */
@@ -57,6 +76,11 @@ export class TrackConnection {
     }
     this.#follow();
     this.#fetch();
+    const {ticks, earlier} = this.#receiver.state;
+    if (ticks !== this.#seen.ticks) {
+      this.#seen = {ticks, earlier};
+      this.#listen();
+    }
     const {serial, consistent} = client.state;
     if (serial !== before && consistent) this.#options.onUpdate?.(client);
   }
@@ -89,7 +113,9 @@ export class TrackConnection {
       this.#bus.request(subjects.lastOf(subjects.tick));
     }
     for (const {track, number} of objects) {
-      const subject = subjects.object(this.#receiver.name(track), number);
+      const name = this.#receiver.name(track);
+      if (!name) continue;
+      const subject = subjects.object(name, number);
       this.#bus.request(number === 0 ? subjects.lastOf(subject) : subjects.updateOf(subject));
     }
   }
@@ -125,6 +151,7 @@ export class TrackConnection {
   #stop() {
     if (this.#ended) return;
     this.#ended = true;
+    clearTimeout(this.#silence);
     this.#options.signal?.removeEventListener('abort', this.#abort);
     this.#bus?.close();
   }

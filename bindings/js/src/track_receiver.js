@@ -75,7 +75,7 @@ export class TrackReceiver {
     });
   }
 
-  /** wantsHello: give it client.hello(); complete, wantedChanges, objects, repeated, damaged, requests. */
+  /** wantsHello: give it client.hello(); complete, wantedChanges, ticks, objects, repeated, earlier, damaged, requests. */
   get state() {
     const instance = this.#instance;
     return instance.with((memory) => {

@@ -92,6 +92,11 @@ test('a page comes back after a server and a publisher that were killed', async 
   publisher = await publish();
   await goesOn();
   assert.equal((await call(page, 'events')).filter(({type}) => type === 'lost').length, 1);
+  publisher.kill('SIGKILL');
+  await page.waitForFunction(() => window.page.events().filter(({type}) => type === 'lost').length === 2);
+  assert.match((await call(page, 'events')).at(-1).why, /nothing was published for 5 s/);
+  publisher = await publish();
+  await goesOn();
   await call(page, 'stop');
   await page.close();
 });

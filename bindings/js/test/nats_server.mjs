@@ -1,7 +1,7 @@
-// nats-server with the users and limits of packaging/nats, alone, and a gi-server that publishes to it.
+// nats-server as packaging/nats/alone.conf has it, and a gi-server that publishes to it.
 import assert from 'node:assert/strict';
 import {execFileSync, spawn} from 'node:child_process';
-import {copyFileSync, mkdirSync, mkdtempSync, rmSync, writeFileSync} from 'node:fs';
+import {mkdtempSync, rmSync, writeFileSync} from 'node:fs';
 import {connect} from 'node:net';
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
@@ -27,15 +27,9 @@ export async function natsServer() {
   const packaging = join(SOURCE, 'packaging/nats'), certificates = join(folder, 'certificates');
   const [port, web] = [portOf(10), portOf(11)];
   execFileSync(join(packaging, 'certificates'), [certificates, 'localhost', '127.0.0.1'], {stdio: 'pipe'});
-  copyFileSync(join(packaging, 'gicodec.conf'), join(folder, 'gicodec.conf'));
-  mkdirSync(join(folder, 'store'));
-  writeFileSync(join(folder, 'nats.conf'), `
-    listen: "127.0.0.1:${port}"
-    jetstream { store_dir: "${folder}/store", max_memory_store: 256MB, max_file_store: 1MB }
-    websocket { listen: "127.0.0.1:${web}", tls { cert_file: $GI_CERTIFICATE, key_file: $GI_KEY } }
-    include "gicodec.conf"`);
   for (const [user, password] of Object.entries(PASSWORDS)) writeFileSync(join(folder, user), `${password}\n`);
   const env = {...process.env, GI_CERTIFICATE: join(certificates, 'server.pem'), GI_KEY: join(certificates, 'server.key'),
+               GI_LISTEN: `127.0.0.1:${port}`, GI_WEB: `127.0.0.1:${web}`, GI_STORE: join(folder, 'store'),
                GI_PUBLISHER_PASSWORD: PASSWORDS.publisher, GI_VIEWER_PASSWORD: PASSWORDS.viewer};
   const ca = join(certificates, 'ca.pem');
   let child;
@@ -45,7 +39,7 @@ export async function natsServer() {
     options: {servers: `wss://127.0.0.1:${web}`, user: 'viewer', pass: PASSWORDS.viewer},
     publisher: {user: 'publisher', pass: PASSWORDS.publisher},
     async start() {
-      child = spawn('nats-server', ['-c', join(folder, 'nats.conf')], {env, stdio: 'ignore'});
+      child = spawn('nats-server', ['-c', join(packaging, 'alone.conf')], {env, stdio: 'ignore'});
       for (const end = Date.now() + 30000; !(await answers(web)); await setTimeout(50)) {
         assert.ok(child.exitCode === null && Date.now() < end, 'nats-server does not start');
       }

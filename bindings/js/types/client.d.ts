@@ -155,8 +155,11 @@ export interface TrackReceiver {
     /** The client has all that is wanted as of the last tick. */
     complete: boolean;
     wantedChanges: number;
+    ticks: number;
     objects: number;
     repeated: number;
+    /** Messages of an earlier epoch, which are ignored. */
+    earlier: number;
     damaged: number;
     requests: number;
   };
@@ -180,8 +183,13 @@ export interface NatsOptions extends Omit<ClientOptions, 'delivery' | 'token'> {
   subscribedOnly?: boolean;
   /** Called after each update of what the client holds. */
   onUpdate?(client: Client): void;
-  /** Called when the connection was lost, which makes itself anew; the client keeps the last state. */
+  /**
+   * Called when the connection was lost, which makes itself anew, and when nothing is published: the client keeps
+   * the last state.
+   */
   onLost?(wait: number, why: string): void;
+  /** Milliseconds without an update after which onLost() is called: 5,000; 0: none. */
+  timeout?: number;
   signal?: AbortSignal;
 }
 

@@ -470,8 +470,10 @@ class gicodec_track_receiver_state(ctypes.Structure):
         ("wants_hello", ctypes.c_uint32),
         ("complete", ctypes.c_uint32),
         ("wanted_changes", ctypes.c_uint64),
+        ("ticks", ctypes.c_uint64),
         ("objects", ctypes.c_uint64),
         ("repeated", ctypes.c_uint64),
+        ("earlier", ctypes.c_uint64),
         ("damaged", ctypes.c_uint64),
         ("requests", ctypes.c_uint64),
     ]

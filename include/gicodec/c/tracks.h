@@ -142,8 +142,10 @@ typedef struct gicodec_track_receiver_state {
   uint32_t wants_hello;
   uint32_t complete;        ///< not 0 if the client has all wanted tracks as of the last tick
   uint64_t wanted_changes;  ///< counts changes of the wanted tracks
+  uint64_t ticks;           ///< each later than the one before
   uint64_t objects;         ///< of wanted tracks, received for the first time
-  uint64_t repeated;        ///< received again, or of an earlier epoch
+  uint64_t repeated;        ///< received again
+  uint64_t earlier;         ///< of an earlier epoch or generation, and ignored
   uint64_t damaged;         ///< messages that could not be read
   uint64_t requests;        ///< of objects
 } gicodec_track_receiver_state;

@@ -61,7 +61,7 @@ int TrackReceiver::State::compare_run(std::uint64_t epoch, std::uint32_t generat
 Status TrackReceiver::State::take(TrackList list) {
   const int run = compare_run(list.epoch, list.generation);
   if (run < 0 || (run == 0 && list.update <= table->list().update)) {
-    ++statistics.repeated;
+    ++(run < 0 ? statistics.earlier : statistics.repeated);
     if (run == 0) wants_list = false;
     return Status::ok;
   }
@@ -94,7 +94,7 @@ Status TrackReceiver::State::take(TrackList list) {
 Status TrackReceiver::State::take(WaitingObject waiting) {
   const TrackObject& object = waiting.object;
   const int run = compare_run(object.epoch, object.generation);
-  if (run < 0) ++statistics.repeated;
+  if (run < 0) ++statistics.earlier;
   if (run != 0) return Status::ok;
   const auto [unit, track] = table->find(object.stream);
   if (unit == nullptr || !unit->wanted) return Status::ok;
@@ -130,7 +130,7 @@ Status TrackReceiver::State::take(TrackTick said) {
   // The first request may have come too early, or to servers without a leader.
   if (!table && ++lists_missed % kFirstPatience == 0) wants_list = true;
   if (run != 0 || (tick && said.update <= tick->update)) {
-    if (run <= 0) ++statistics.repeated;
+    if (run <= 0) ++(run < 0 ? statistics.earlier : statistics.repeated);
     return Status::ok;
   }
   if (said.scrolls.size() != table->list().volumes.size()) return Status::corrupt;
@@ -140,6 +140,7 @@ Status TrackReceiver::State::take(TrackTick said) {
   table->scroll(said.scrolls);
   tick = std::move(said);
   ++ticks;
+  ++statistics.ticks;
   requests_left = kMaxRequests;
   new_tick = has_news = true;
   return Status::ok;

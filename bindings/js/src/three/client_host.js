@@ -58,7 +58,7 @@ export class ClientHost {
     };
     const on = {onUpdate: () => this.#update(), onLost: (wait, why) => this.#post({type: 'lost', wait, why})};
     this.#connection = tracks
-      ? new TrackConnection(this.#client, receiver, (bus) => this.#busOfPage(bus), {prefix, ...on})
+      ? new TrackConnection(this.#client, receiver, (bus) => this.#busOfPage(bus), {prefix, timeout, ...on})
       : new Connection(this.#client, url, {timeout, everything, ...on});
     this.#connection.closed.then((reason) => this.#post({type: 'closed', reason}), (error) => this.#fail(error));
   }
