@@ -81,6 +81,8 @@ def becomes_full(node):
     """Another stream takes all that is left; live viewers notice nothing."""
     publisher = publish(node, "full", "--snapshot-seconds", "1")
     check(logged(publisher, "listening"), log_of(publisher))
+    live = view(node, "--seconds", "8")
+    time.sleep(1)
     other = Nats(node)
     made = other.request("$JS.API.STREAM.CREATE.other", json.dumps(
         {"name": "other", "subjects": ["other"], "storage": "memory", "retention": "limits"}).encode())
@@ -89,7 +91,6 @@ def becomes_full(node):
     while b'"error"' not in (other.request("other", bytes(200_000)) or b'"error"'):
         stored += 1
     check(stored > 10, f"{stored} messages fill it")
-    live = view(node, "--updates", "60")
     check(logged(publisher, "does not store messages"), log_of(publisher))
     end(live, "a viewer of servers that are full")
     check(b'"success":true' in (other.request("$JS.API.STREAM.DELETE.other") or b""), "the other stream is deleted")
@@ -107,6 +108,18 @@ def forgets(node, publisher):
     check(logged(publisher, "NATS is reached again"), log_of(publisher))
     check(end(live, "a viewer of a server that was killed").get("longest_pause_ms", 9e9) < 2000, "it goes on within 2 s")
     end(view(node, "--updates", "20"), "who comes to a server that has forgotten all")
+
+
+def loses_streams(node, publisher):
+    """Somebody deletes them."""
+    other = Nats(node)
+    for name in ("gicodec-last", "gicodec-updates"):
+        check(b'"success":true' in (other.request(f"$JS.API.STREAM.DELETE.{name}") or b""), f"{name} is deleted")
+    deadline = time.monotonic() + 15
+    while not other.request("$JS.API.DIRECT.GET.gicodec-last.gicodec.list") and time.monotonic() < deadline:
+        time.sleep(0.2)
+    other.close()
+    end(view(node, "--updates", "20"), "who comes after the streams were deleted")
 
 
 def is_told_nonsense(node):
@@ -150,6 +163,7 @@ try:
     node.start()
     publisher = becomes_full(node)
     forgets(node, publisher)
+    loses_streams(node, publisher)
     is_told_nonsense(node)
     publisher.kill()
     publisher.wait()

@@ -23,6 +23,11 @@ struct NatsPublisherOptions {
   double standby_after = 1;  ///< seconds without an update after which a standby takes over
 };
 
+/// What to do where the servers keep no more.
+inline constexpr const char* kFullCure =
+    "max_memory_store in the servers' configuration gives it more room, --nats-max-mb asks for "
+    "less";
+
 /// The epoch of this publisher, and where it goes on. An epoch is above the last one, and at least
 /// the time in seconds, so that it grows also where the servers have forgotten the last one.
 struct Turn {
@@ -64,7 +69,8 @@ class NatsPublisher {
   void handle(const tools::NatsMessage& message, TrackPublisher& tracks);
   void ask_to_resume(std::uint64_t connections);
   void resume(const tools::NatsMessage& last, TrackPublisher& tracks);
-  void answered(const tools::NatsMessage& message);
+  void answered(const tools::NatsMessage& message, TrackPublisher& tracks);
+  void publish_streams();
   void repeat(TrackPublisher& tracks);
   enum class Fault : std::uint8_t { not_reached, not_stored, too_large, slow };
   void remark(const std::string& text);

@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <charconv>
+#include <span>
 #include <utility>
 
 namespace gicodec::streaming {
@@ -25,14 +27,17 @@ bool is_plain(char c) {
          c == '_';
 }
 
+std::vector<std::byte> bytes_of(const std::string& text) {
+  const auto bytes = std::as_bytes(std::span(text));
+  return {bytes.begin(), bytes.end()};
+}
+
 NatsMessage request(std::string subject, const std::string& reply, const json& body) {
   NatsMessage message;
   message.subject = std::move(subject);
   message.reply = reply;
   if (body.is_null()) return message;
-  const std::string text = nlohmann::to_string(body);
-  const auto bytes = std::as_bytes(std::span(text));
-  message.data.assign(bytes.begin(), bytes.end());
+  message.data = bytes_of(nlohmann::to_string(body));
   return message;
 }
 
@@ -178,6 +183,23 @@ NatsMessage make_update_stream(const TrackSubjects& subjects, const StreamSettin
       subjects.update_stream(), subjects.update_subjects(), settings,
       {{"max_age", nanoseconds(settings.keep_seconds)}, {"max_bytes", settings.keep_bytes}}, exists,
       reply);
+}
+
+std::uint64_t number_in(std::string_view text) {
+  std::uint64_t number = 0;
+  std::from_chars(text.data(), text.data() + text.size(), number);
+  return number;
+}
+
+NatsMessage make_claim(const TrackSubjects& subjects, std::uint64_t epoch) {
+  NatsMessage message;
+  message.subject = subjects.publisher();
+  message.data = bytes_of(fmt::format("{}", epoch));
+  return message;
+}
+
+std::uint64_t claimed_epoch(const NatsMessage& message) {
+  return number_in({reinterpret_cast<const char*>(message.data.data()), message.data.size()});
 }
 
 NatsMessage get_last(const std::string& stream, const std::string& subject,

@@ -75,6 +75,12 @@ struct StreamSettings {
 [[nodiscard]] tools::NatsMessage get_last(const std::string& stream, const std::string& subject,
                                           const std::string& reply);
 
+/// The number at the beginning of a text; 0: there is none.
+[[nodiscard]] std::uint64_t number_in(std::string_view text);
+/// A publisher's message that it has this epoch, and the epoch of one.
+[[nodiscard]] tools::NatsMessage make_claim(const TrackSubjects& subjects, std::uint64_t epoch);
+[[nodiscard]] std::uint64_t claimed_epoch(const tools::NatsMessage& message);
+
 /// What JetStream answers to a message that it stores, or to make_…_stream().
 struct StreamAnswer {
   std::string stream;

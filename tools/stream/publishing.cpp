@@ -47,7 +47,7 @@ std::unique_ptr<NatsPublisher> begin_publishing(ServerFlags& o, Feed& feed) {
   auto nats = std::make_unique<NatsPublisher>(o.nats);
   if (!o.standby) {
     o.server.epoch = nats->begin().epoch;
-    if (!o.service.quiet)
+    if (!o.service.quiet && !tools::interrupted())
       log_line("gi-server: publishing over {} under {}; a publisher before this one ends",
                nats_flags.urls, nats_flags.prefix);
     return nats;
