@@ -50,8 +50,9 @@ struct TrackStatistics {
 class TrackPublisher {
  public:
   /// `server` must outlive the publisher, and not be moved. Its epoch must be above that of every
-  /// publisher before it: receivers ignore lower ones. Errors: invalid_argument (options);
-  /// limit_exceeded (ServerLimits::max_clients, of which a publisher takes two); out_of_memory.
+  /// publisher before it, so not drawn: receivers ignore lower ones. Errors: invalid_argument
+  /// (options); limit_exceeded (ServerLimits::max_clients, of which a publisher takes two);
+  /// out_of_memory.
   [[nodiscard]] static Result<TrackPublisher> create(Server& server,
                                                      const TrackOptions& options = {});
   TrackPublisher(TrackPublisher&&) noexcept;

@@ -78,6 +78,7 @@ gicodec_status gicodec_server_create(const gicodec_server_options* options, gico
                      ServerOptions settings;
                      const Status status = c::take_options(given, handle.host, settings);
                      if (status != Status::ok) return status;
+                     handle.has_epoch = given.epoch != 0;
                      return c::keep(Server::create(settings), handle.server);
                    });
 }

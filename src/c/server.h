@@ -23,6 +23,7 @@ struct Outbox {
 
 struct gicodec_server : gicodec::c::Handle {
   std::optional<gicodec::Server> server;
+  bool has_epoch = false;  ///< the caller chose it
   std::map<gicodec::ConnectionId, gicodec::c::Outbox> outboxes;
   std::vector<gicodec::ServerEvent> events;
   std::size_t told = 0;  ///< of these

@@ -25,7 +25,7 @@ gicodec_status gicodec_track_publisher_create(gicodec_server* server,
   return c::create(
       options, out,
       [&](gicodec_track_publisher& handle, const gicodec_track_publisher_options& given) -> Status {
-        if (server == nullptr) return Status::invalid_argument;
+        if (server == nullptr || !server->has_epoch) return Status::invalid_argument;
         c::set(handle.options.snapshot_seconds, given.snapshot_seconds);
         c::set(handle.options.snapshot_share, given.snapshot_share);
         return c::keep(TrackPublisher::create(*server->server, handle.options), handle.publisher);

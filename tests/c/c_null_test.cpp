@@ -397,8 +397,13 @@ TEST(CNull, NullInPlaceOfWhatTracksNeed) {
   EXPECT_EQ(gicodec_track_publisher_kept_seconds(nullptr), 0);
   EXPECT_EQ(gicodec_track_publisher_repeat_snapshots(nullptr), kInvalid);
   gicodec_track_publisher_destroy(nullptr);
+  auto serving = sized<gicodec_server_options>();
+  const auto drawn =
+      made<OwnedServer>([&](auto out) { return gicodec_server_create(&serving, out); });
+  EXPECT_EQ(gicodec_track_publisher_create(drawn.get(), nullptr, &publisher), kInvalid);
+  serving.epoch = 1;
   const auto server =
-      made<OwnedServer>([](auto out) { return gicodec_server_create(nullptr, out); });
+      made<OwnedServer>([&](auto out) { return gicodec_server_create(&serving, out); });
   EXPECT_EQ(gicodec_track_publisher_create(server.get(), nullptr, nullptr), kInvalid);
   const auto owned = made<OwnedPublisher>(
       [&](auto out) { return gicodec_track_publisher_create(server.get(), nullptr, out); });

@@ -11,8 +11,9 @@ import subprocess
 import sys
 import tempfile
 import time
+import urllib.request
 
-from nats_nodes import Alone, Nats
+from nats_nodes import Alone, Nats, free_ports
 
 programs = sys.argv[1]
 if not shutil.which("nats-server"):
@@ -79,8 +80,12 @@ def too_small():
 
 def becomes_full(node):
     """Another stream takes all that is left; live viewers notice nothing."""
-    publisher = publish(node, "full", "--snapshot-seconds", "1")
+    web = free_ports(1)[0]
+    publisher = publish(node, "full", "--snapshot-seconds", "1", "--listen-web", f"127.0.0.1:{web}", "--insecure-web")
     check(logged(publisher, "listening"), log_of(publisher))
+    with urllib.request.urlopen(f"http://127.0.0.1:{web}/metrics") as answer:
+        metrics = answer.read().decode()
+    check('gicodec_published_bytes_total{type="snapshot"}' in metrics and "gicodec_unstored_messages" in metrics, metrics)
     live = view(node, "--seconds", "8")
     time.sleep(1)
     other = Nats(node)

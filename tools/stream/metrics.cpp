@@ -64,6 +64,16 @@ std::string metrics_text(const Metrics& m) {
   fmt::format_to(std::back_inserter(text),
                  "gicodec_encode_seconds_sum {}\ngicodec_encode_seconds_count {}\n", t.encode.sum,
                  t.encode.count);
+  if (!t.published) return text;
+  const TrackStatistics& p = *t.published;
+  head(text, "gicodec_published_bytes_total", "counter", "Bytes of messages to NATS, by type.");
+  fmt::format_to(std::back_inserter(text),
+                 "gicodec_published_bytes_total{{type=\"update\"}} {}\n"
+                 "gicodec_published_bytes_total{{type=\"snapshot\"}} {}\n"
+                 "gicodec_published_bytes_total{{type=\"other\"}} {}\n",
+                 p.update_bytes, p.snapshot_bytes, p.other_bytes);
+  add(text, "gicodec_unstored_messages", "gauge",
+      "Messages that JetStream has not said to keep yet.", t.unanswered);
   return text;
 }
 

@@ -112,7 +112,7 @@ void ServerStatistics::named(ConnectionId connection, const std::string& user) {
 
 ServerStatistics::Totals ServerStatistics::totals(Server& server) {
   for (auto& [id, connection] : connections_) collect(server, id, connection);
-  return {late_, bytes_, blocks_, all_encode_, latency_, recent_};
+  return {late_, bytes_, blocks_, all_encode_, latency_, recent_, published_, unanswered_};
 }
 
 void ServerStatistics::closed(Server& server, ConnectionId connection) {

@@ -64,7 +64,9 @@ class ServerStatistics {
   struct Totals {
     std::uint64_t late = 0, bytes = 0, blocks = 0;
     Durations encode, latency;
-    std::vector<float> latencies;  ///< most recent ones, seconds
+    std::vector<float> latencies;                   ///< most recent ones, seconds
+    std::optional<TrackStatistics> published = {};  ///< over NATS
+    std::uint64_t unanswered = 0;
   };
   [[nodiscard]] Totals totals(Server& server);
   /// Writes a line if a second has passed since the last one.

@@ -36,10 +36,10 @@ typedef struct gicodec_track_publisher_options {
 
 typedef struct gicodec_track_publisher gicodec_track_publisher;
 
-/// Publishes what a server serves. `server`: outlives the publisher; its epoch is above that of
-/// every publisher before it, since receivers ignore lower ones. `options`: NULL for the defaults.
-/// GICODEC_INVALID_ARGUMENT; GICODEC_LIMIT_EXCEEDED if max_clients has no room for two more;
-/// GICODEC_OUT_OF_MEMORY.
+/// Publishes what a server serves. `server`: outlives the publisher; its epoch is not 0 and above
+/// that of every publisher before it, since receivers ignore lower ones: the seconds since 1970
+/// will do where clocks are right. `options`: NULL for the defaults. GICODEC_INVALID_ARGUMENT;
+/// GICODEC_LIMIT_EXCEEDED if max_clients has no room for two more; GICODEC_OUT_OF_MEMORY.
 GICODEC_C_API gicodec_status gicodec_track_publisher_create(
     gicodec_server* server, const gicodec_track_publisher_options* options,
     gicodec_track_publisher** out);
@@ -94,7 +94,9 @@ typedef struct gicodec_track_receiver_options {
 typedef struct gicodec_track_receiver gicodec_track_receiver;
 
 /// Stands between messages of tracks and a client of GICODEC_DELIVERY_SHARED, for which it is the
-/// server. `options`: NULL for the defaults. GICODEC_INVALID_ARGUMENT, GICODEC_OUT_OF_MEMORY.
+/// server: give it what gicodec_client_hello() and later calls prepare, by
+/// gicodec_track_receiver_take(), and the client what gicodec_track_receiver_message() has.
+/// `options`: NULL for the defaults. GICODEC_INVALID_ARGUMENT, GICODEC_OUT_OF_MEMORY.
 GICODEC_C_API gicodec_status gicodec_track_receiver_create(
     const gicodec_track_receiver_options* options, gicodec_track_receiver** out);
 GICODEC_C_API void gicodec_track_receiver_destroy(gicodec_track_receiver* receiver);
@@ -123,7 +125,8 @@ typedef struct gicodec_track_object {
   uint32_t number;
 } gicodec_track_object;
 
-/// What to fetch, once: `list`, not 0 for the last list and the last tick, and objects, those of
+/// What to fetch, once, after each message: what does not come is asked for again some ticks later.
+/// `list`, not 0 for the last list and the last tick, and objects, those of
 /// the nearest tracks first. Subscribe to the wanted tracks before; receive the answers in any
 /// order.
 GICODEC_C_API gicodec_status gicodec_track_receiver_requests(gicodec_track_receiver* receiver,
