@@ -13,7 +13,7 @@ import tempfile
 import time
 import urllib.request
 
-from nats_nodes import Alone, Nats, free_ports
+from nats_nodes import Alone, Nats
 
 programs = sys.argv[1]
 if not shutil.which("nats-server"):
@@ -80,9 +80,12 @@ def too_small():
 
 def becomes_full(node):
     """Another stream takes all that is left; live viewers notice nothing."""
-    web = free_ports(1)[0]
-    publisher = publish(node, "full", "--snapshot-seconds", "1", "--listen-web", f"127.0.0.1:{web}", "--insecure-web")
+    ports = os.path.join(work, "ports")
+    publisher = publish(node, "full", "--snapshot-seconds", "1", "--listen-web", "127.0.0.1:0", "--insecure-web",
+                        "--port-file", ports)
     check(logged(publisher, "listening"), log_of(publisher))
+    with open(ports) as file:
+        web = file.read().split()[-1]
     with urllib.request.urlopen(f"http://127.0.0.1:{web}/metrics") as answer:
         metrics = answer.read().decode()
     check('gicodec_published_bytes_total{type="snapshot"}' in metrics and "gicodec_unstored_messages" in metrics, metrics)
