@@ -84,13 +84,13 @@ def becomes_full(node):
     publisher = publish(node, "full", "--snapshot-seconds", "1", "--listen-web", "127.0.0.1:0", "--insecure-web",
                         "--port-file", ports)
     check(logged(publisher, "listening"), log_of(publisher))
+    live = view(node, "--seconds", "8")
+    time.sleep(1)
     with open(ports) as file:
         web = file.read().split()[-1]
     with urllib.request.urlopen(f"http://127.0.0.1:{web}/metrics") as answer:
         metrics = answer.read().decode()
     check('gicodec_published_bytes_total{type="snapshot"}' in metrics and "gicodec_unstored_messages" in metrics, metrics)
-    live = view(node, "--seconds", "8")
-    time.sleep(1)
     other = Nats(node)
     made = other.request("$JS.API.STREAM.CREATE.other", json.dumps(
         {"name": "other", "subjects": ["other"], "storage": "memory", "retention": "limits"}).encode())
