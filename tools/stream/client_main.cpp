@@ -246,6 +246,10 @@ Exit run(ClientFlags& o) {
   const ddgi::Scene* const scene = loaded->scene.get();
   if (scene != nullptr) o.viewer.scene = ddgi::scene_id(kinds::scene_label(o.scene), *scene);
   const CameraPath path(o.camera, scene);
+  if (o.viewer.link.net.tracks.reach > 0 && !path.known())
+    fail(Exit::usage, "--reach: from where? --camera says it, or --scene has a path");
+  if (o.viewer.link.net.tracks.reach > 0 && o.subscribe == "all")
+    fail(Exit::usage, "--reach and --subscribe all exclude each other");
   // Without a viewpoint the server cannot choose blocks.
   o.viewer.subscribe_all = o.subscribe == "all" || (o.subscribe.empty() && !path.known());
   if (o.simulate > 0) return run_load_test(o, path);

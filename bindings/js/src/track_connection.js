@@ -92,8 +92,9 @@ export class TrackConnection {
   /** Subscribes to the updates of wanted tracks, and to no others. */
   #follow() {
     const {wantedChanges} = this.#receiver.state;
+    // None is wanted before the client's first answer.
+    if (wantedChanges === this.#changes && this.#followed.size > 0) return;
     const {wanted} = this.#receiver;
-    if (wantedChanges === this.#changes && wanted.length === this.#followed.size) return;
     this.#changes = wantedChanges;
     const subjects = new Map(wanted.map((track) => [this.#subjects.updates(this.#receiver.name(track)), track]));
     for (const subject of this.#followed.keys()) {

@@ -13,6 +13,8 @@ export class TrackReceiver {
   /** @internal */
   static async create(module, options = {}) {
     checkOptions(options, ['reach', 'subscribedOnly', 'maxTracks', 'maxWaitingBytes']);
+    const {reach = 0} = options;
+    if (!(reach >= 0 && reach < Infinity)) throw new RangeError(`reach is a distance, 0 or more, not ${reach}`);
     const instance = await module.create();
     const receiver = new TrackReceiver();
     receiver.#instance = instance;

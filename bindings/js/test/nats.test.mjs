@@ -174,6 +174,6 @@ test('a receiver without a transport', async () => {
   assert.deepEqual([receiver.state.damaged, receiver.wanted, receiver.messages()], [199, [], []]);
   assert.equal(receiver.name({volume: 0, texture: 0, region: 0}), null);
   assert.throws(() => receiver.take(new Uint8Array(3)), {code: 'invalid_argument'});
-  await assert.rejects(TrackReceiver.create({reach: -1}), {code: 'invalid_argument'});
+  await assert.rejects(TrackReceiver.create({reach: -1}), {name: 'RangeError', message: /^reach/});
   await assert.rejects(TrackReceiver.create({far: 1}), {name: 'TypeError'});
 });

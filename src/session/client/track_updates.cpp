@@ -64,6 +64,8 @@ TrackWay TrackReceiver::State::way_of(const Track& track) const noexcept {
 /// was before is unknown, and the other tracks need snapshots, too. False if they lack them.
 bool TrackReceiver::State::follow_presence(const TrackUnit& unit,
                                            std::vector<TrackWay>& ways) const noexcept {
+  if (std::none_of(ways.begin(), ways.end(), [](const TrackWay& way) { return way.by_snapshot; }))
+    return true;
   for (std::size_t t = 0; t < ways.size(); ++t) {
     const Track& track = unit.tracks[t];
     const auto presence = table->presence_of(track.stream);
