@@ -20,7 +20,7 @@ if not shutil.which("nats-server"):
     print("skipped: nats-server is not installed")
     sys.exit(77)
 work = tempfile.mkdtemp(prefix="gicodec-nats-faults-")
-running, failures = [], 0
+running, nodes, failures = [], [], 0
 SCENE = ["--scene", "tomb"]
 
 
@@ -29,6 +29,12 @@ def check(good, what):
     if not good:
         failures += 1
         print(f"FAILED: {what}", file=sys.stderr)
+
+
+def serve(memory):
+    nodes.append(Alone(work, memory))
+    nodes[-1].start()
+    return nodes[-1]
 
 
 def publish(node, name, *flags):
@@ -71,8 +77,7 @@ def end(process, what):
 
 
 def too_small():
-    node = Alone(work, "1MB")
-    node.start()
+    node = serve("1MB")
     refused = publish(node, "too-small")
     check(refused.wait(30) == 4 and "--nats-max-mb" in log_of(refused), log_of(refused))
     node.stop()
@@ -167,8 +172,7 @@ def clock_is_behind(node, publisher):
 
 try:
     too_small()
-    node = Alone(work, "24MB")
-    node.start()
+    node = serve("24MB")
     publisher = becomes_full(node)
     forgets(node, publisher)
     loses_streams(node, publisher)
@@ -178,11 +182,12 @@ try:
     publisher = publish(node, "again")
     check(logged(publisher, "listening"), log_of(publisher))
     clock_is_behind(node, publisher)
-    node.stop()
 finally:
     for process in running:
         if process.poll() is None:
             process.kill()
+    for node in nodes:
+        node.stop()
     if failures == 0 and sys.exc_info()[0] is None:
         shutil.rmtree(work)
     else:
