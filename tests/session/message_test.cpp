@@ -144,10 +144,14 @@ AnyMessage random_message(Random& random, const Bytes& packet) {
                        random_runs(random)};
     case 9: {
       const std::uint64_t update = pick(random, 1, 900);
-      TrackObject object{
-          random(), update,   pick(random, 0, static_cast<std::uint32_t>(update - 1)),
-          number(), number(), random_stream(random),
-          {},       {}};
+      TrackObject object{random(),
+                         update,
+                         pick(random, 0, static_cast<std::uint32_t>(update - 1)),
+                         pick(random, 0, 1023),
+                         number(),
+                         random_stream(random),
+                         {},
+                         {}};
       if (object.stream.region == StreamId::kWholeVolume) object.stream.region = 0;
       for (std::uint32_t i = 0, packets = pick(random, 1, 2); i < packets; ++i)
         object.packets.push_back(std::span<const std::byte>(packet).first(packet.size() / (i + 1)));
@@ -214,6 +218,17 @@ RC_GTEST_PROP(Messages, AnyBytesAreReadOrRefused, (std::uint64_t seed)) {
     Message again;
     RC_ASSERT(write_message(*read, again) == Status::ok);
   }
+}
+
+TEST(Messages, NumbersOfObjectsAreLimited) {
+  const Bytes packet(9);
+  TrackObject object{1, 9, 8, 1024, 1, {0, 0, 0}, {std::span<const std::byte>(packet)}, {}};
+  Message bytes;
+  EXPECT_EQ(write_message(object, bytes), Status::invalid_argument);
+  object.number = 1023;
+  EXPECT_EQ(write_message(object, bytes), Status::ok);
+  const TrackTick tick{1, 9, 0, 1, {}, 0, {{{0, 0, 0}, 1, 0, 1024}}};
+  EXPECT_EQ(write_message(tick, bytes), Status::invalid_argument);
 }
 
 TEST(Messages, RefusesAnotherVersionAndAnotherProtocol) {
