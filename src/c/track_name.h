@@ -7,9 +7,9 @@
 #include <gicodec/delivery.h>
 
 #include <cstdint>
-#include <iterator>
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace gicodec::c {
 

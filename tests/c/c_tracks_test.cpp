@@ -121,6 +121,13 @@ struct Publisher {
       if (found != kept.end()) viewer.receive(found->second);
     }
   }
+  /// All that the receiver asks for, and asks for because of that.
+  void settle(const Viewer& viewer) const {
+    for (int trip = 0; trip < 4; ++trip) {
+      fetch(viewer);
+      viewer.advance();
+    }
+  }
 
   gicodec_texture_desc desc;
   CTexture texture;
@@ -139,10 +146,7 @@ TEST(CTracks, ALateViewerHoldsWhatIsPublished) {
   EXPECT_EQ(gicodec_track_publisher_kept_seconds(publisher.publisher.get()), 16);
 
   const Viewer viewer;
-  for (int trip = 0; trip < 4; ++trip) {
-    publisher.fetch(viewer);
-    viewer.advance();
-  }
+  publisher.settle(viewer);
   EXPECT_EQ(viewer.state().complete, 1U);
   EXPECT_EQ(viewer.wanted().size(), 4U);
   EXPECT_EQ(viewer.texels(), publisher.texture.bytes);
@@ -168,10 +172,7 @@ TEST(CTracks, WithAReachTheNearOnesComeFirst) {
   viewpoint.fov_y = 60;
   viewpoint.aspect = 1;
   ASSERT_EQ(gicodec_client_set_viewpoint(viewer.client.get(), &viewpoint), GICODEC_OK);
-  for (int trip = 0; trip < 4; ++trip) {
-    publisher.fetch(viewer);
-    viewer.advance();
-  }
+  publisher.settle(viewer);
   EXPECT_EQ(viewer.wanted(), (std::vector<std::string>{"room.color.3", "room.color.2"}));
   EXPECT_EQ(viewer.state().complete, 1U);
 }
@@ -182,20 +183,14 @@ TEST(CTracks, NothingButWhatIsSubscribedTo) {
   auto options = sized<gicodec_track_receiver_options>();
   options.subscribed_only = 1;
   const Viewer viewer(options);
-  const auto settle = [&] {
-    for (int trip = 0; trip < 4; ++trip) {
-      publisher.fetch(viewer);
-      viewer.advance();
-    }
-  };
-  settle();
+  publisher.settle(viewer);
   EXPECT_TRUE(viewer.wanted().empty());
   std::vector<std::uint8_t> blocks(32);
   blocks[4] = 1;
   ASSERT_EQ(gicodec_client_subscribe(viewer.client.get(), 0, 0, blocks.data(), blocks.size()),
             GICODEC_OK);
   viewer.answer();
-  settle();
+  publisher.settle(viewer);
   EXPECT_EQ(viewer.wanted(), std::vector<std::string>{"room.color.2"});
   EXPECT_EQ(viewer.state().complete, 1U);
 }

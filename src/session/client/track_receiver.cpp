@@ -198,14 +198,17 @@ Status TrackReceiver::State::answer(const Resync& resync) {
   number = 0;
   if (!table) return Status::ok;
   for (TrackUnit& unit : table->units()) {
+    bool lacks = false;
     for (Track& track : unit.tracks) {
       const auto found = held.find(track.stream);
       const bool has = found != held.end() && found->second.sequence == track.sent.sequence &&
                        found->second.checksum == track.sent.checksum;
       if (has || track.at == 0) continue;
       track.forget_held();
-      for (Track& any : unit.tracks) any.asks = unit.wanted;
+      lacks = true;
     }
+    if (!lacks) continue;
+    for (Track& track : unit.tracks) track.asks = unit.wanted;
   }
   has_news = new_tick = true;  // The client waits for an update of the sync point.
   return Status::ok;
@@ -225,13 +228,13 @@ Status TrackReceiver::State::answer(const Subscribe& subscribe) {
 }
 
 Status TrackReceiver::State::answer(const Viewpoint& viewpoint) {
+  if (interest.reach <= 0) {
+    interest.viewpoint = viewpoint;
+    return Status::ok;
+  }
   TrackInterest next = interest;
   next.viewpoint = viewpoint;
-  if (next.reach > 0) {
-    choose(std::move(next));
-  } else {
-    interest = std::move(next);
-  }
+  choose(std::move(next));
   return Status::ok;
 }
 
