@@ -27,8 +27,10 @@ using Random = std::mt19937_64;
 /// Whether sweeps are to try all their cases, and each case on all instruction sets and numbers of
 /// threads, rather than on one after the other. That takes hours under sanitizers.
 [[nodiscard]] bool everything();
+/// Sweeps try one case in so many: all where everything is tried, fewer with sanitizers.
+[[nodiscard]] std::size_t one_case_in();
 
-/// The cases of a sweep that are tried where not everything is: one in a few, in turn.
+/// The cases of a sweep that are tried, in turn.
 class Sweep {
  public:
   [[nodiscard]] bool takes();

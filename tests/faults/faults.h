@@ -40,13 +40,13 @@ class Fault {
   bool lasting_, failed_ = false, over_ = false;
 };
 
-/// Runs script(fault) with every fault that there is, or by default with every third of a call.
+/// Runs script(fault) with every fault that there is, or with one_case_in() of those of a call.
 /// Returns about how many there are.
 template <typename Script>
 std::size_t with_every_fault(Script&& script) {
   Fault none(SIZE_MAX, 1, false);
   script(none);
-  const std::size_t step = everything() ? 1 : 3;
+  const std::size_t step = one_case_in();
   std::size_t faults = 0;
   for (const bool lasting : {false, true}) {
     for (std::size_t call = 0; call < none.calls(); ++call) {

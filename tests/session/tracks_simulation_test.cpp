@@ -365,7 +365,7 @@ RC_GTEST_PROP(TrackSimulation, ReceiversShowWhatWasPublished, (std::uint64_t see
 TEST(TrackSimulation, PresenceThatSkipsUpdates) { run_track_world(28956); }
 
 TEST(TrackSimulation, ManySchedules) {
-  const std::uint64_t schedules = everything() ? 500 : 60;
+  const std::uint64_t schedules = everything() ? 500 : 180 / one_case_in();
   TrackCounts all;
   for (std::uint64_t seed = 0; seed < schedules && !testing::Test::HasFailure(); ++seed) {
     const TrackCounts one = run_track_world(seed);
