@@ -140,10 +140,16 @@ Exit run_viewer(ClientFlags& o, const CameraPath& path, Renderer* renderer,
     fail(Exit::io, "{}: the connection was lost, and no server answered until the time was over",
          o.connect);
   }
+  const bool ended = result.state == ClientLink::State::ended;
+  if (result.updates == 0 && o.viewer.updates == 0 && o.record.empty() && !ended &&
+      !tools::interrupted()) {
+    log_line("gi-client: no update came until the time was over");
+    return Exit::different;
+  }
   const Exit came = enough(o, result.updates, result.frames,
-                           tools::interrupted()                       ? "interrupted"
-                           : result.state == ClientLink::State::ended ? result.message
-                                                                      : "the time was over");
+                           tools::interrupted() ? "interrupted"
+                           : ended              ? result.message
+                                                : "the time was over");
   return came == Exit::ok ? recorded(o, recording) : came;
 }
 
