@@ -4,6 +4,7 @@
 
 #include <nats/nats.h>
 
+#include <algorithm>
 #include <chrono>
 #include <condition_variable>
 #include <cstring>
@@ -17,6 +18,7 @@
 namespace gicodec::tools {
 namespace {
 
+constexpr double kLongestAttempt = 8;         // seconds
 constexpr std::int64_t kReconnectWait = 100;  // milliseconds
 constexpr std::int64_t kPing = 1000;          // milliseconds; two without an answer are a loss
 constexpr std::int64_t kLastFlush = 500;      // milliseconds
@@ -79,7 +81,7 @@ class LibNats final : public NatsConnection {
 
   void run();
   void connect();
-  natsStatus set_options(natsOptions* options);
+  natsStatus set_options(natsOptions* options, double seconds);
   void take_connection(natsConnection* connection);
   void close();
   bool add(Task&& task);
@@ -147,10 +149,10 @@ void LibNats::fail(natsStatus status, const char* detail, bool final) {
   state_.final = state_.final || final;
 }
 
-natsStatus LibNats::set_options(natsOptions* options) {
+natsStatus LibNats::set_options(natsOptions* options, double seconds) {
   std::vector<const char*> urls;
   for (const std::string& url : options_.urls) urls.push_back(url.c_str());
-  const auto timeout = static_cast<std::int64_t>(options_.timeout * 1e3);
+  const auto timeout = static_cast<std::int64_t>(seconds * 1e3);
   natsStatus status = natsOptions_SetServers(options, urls.data(), static_cast<int>(urls.size()));
   const auto set = [&status](natsStatus next) {
     if (status == NATS_OK) status = next;
@@ -225,11 +227,13 @@ void LibNats::take_connection(natsConnection* connection) {
 
 /// Tries until it is connected, or refused, or the program ends.
 void LibNats::connect() {
-  while (true) {
+  // Longer each time, for servers that are far away.
+  const double longest = std::max(options_.timeout, kLongestAttempt);
+  for (double seconds = options_.timeout;; seconds = std::min(2 * seconds, longest)) {
     natsOptions* made = nullptr;
     natsStatus status = natsOptions_Create(&made);
     const Options options(made);
-    if (status == NATS_OK) status = set_options(made);
+    if (status == NATS_OK) status = set_options(made, seconds);
     if (status != NATS_OK) return fail(status, nats_GetLastError(nullptr), true);
     natsConnection* connection = nullptr;
     status = natsConnection_Connect(&connection, made);

@@ -17,7 +17,7 @@ struct NatsOptions {
   std::string name;               ///< of this program, for operators
   std::string user, password;     ///< empty: none
   std::string ca;                 ///< file of authorities to trust; empty: the system's
-  double timeout = 2;             ///< seconds for one attempt to connect, and to write
+  double timeout = 2;             ///< seconds to connect, more after failed attempts, and to write
   std::size_t max_unsent = std::size_t{64} << 20;     ///< bytes that publish() may queue
   std::size_t max_received = std::size_t{256} << 20;  ///< bytes that wait for next()
 };
