@@ -30,13 +30,13 @@ using Random = std::mt19937_64;
 /// Sweeps try one case in so many: all where everything is tried, fewer with sanitizers.
 [[nodiscard]] std::size_t one_case_in();
 
-/// The cases of a sweep that are tried, in turn.
+/// The cases of a sweep that are tried: the first, and others here and there.
 class Sweep {
  public:
   [[nodiscard]] bool takes();
 
  private:
-  std::size_t case_ = 0;
+  std::uint32_t case_ = 0;
 };
 
 /// False where `std::size_t` has 32 bits: textures that no memory can hold are invalid there.

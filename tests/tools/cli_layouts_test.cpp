@@ -138,6 +138,12 @@ class CliLayouts : public testing::TestWithParam<const EngineLayout*> {
   Program program_;
 };
 
+/// One of all layouts.
+test::Sweep& sweep() {
+  static test::Sweep all;
+  return all;
+}
+
 /// Through a container and back.
 TEST_P(CliLayouts, ComeBackAsEveryKindOfFile) {
   for (const std::string ending : {"exr", "dds", "ktx2", "raw"}) {
@@ -145,7 +151,7 @@ TEST_P(CliLayouts, ComeBackAsEveryKindOfFile) {
     const auto lacking = std::ranges::find_if(textures_, [&](const NamedTexture& texture) {
       return !has_format(*image_kind("x." + ending), texture.desc.record.format);
     });
-    if (lacking != textures_.end()) continue;
+    if (lacking != textures_.end() || !sweep().takes()) continue;
     const std::string out = "out-" + ending, file = name_ + "-" + ending + ".gic";
     const std::string all = fmt::format("{0} of {0} files", kLayoutFrames * textures_.size());
     write(ending, ending);
@@ -172,15 +178,8 @@ TEST_P(CliLayouts, ComeBackAsEveryKindOfFile) {
     EXPECT_EQ(verified.exit, 1);
     expect_part(verified.out, fmt::format("{} of {} files", kLayoutFrames * textures_.size() - 1,
                                           kLayoutFrames * textures_.size()));
+    program_.succeed({"preview", file, "--texture", first, "-o", "a-" + ending + ".png"});
   }
-  program_.succeed(
-      {"preview", name_ + "-raw.gic", "--texture", textures_.front().name, "-o", "a.png"});
-}
-
-/// One of all layouts.
-test::Sweep& sweep() {
-  static test::Sweep all;
-  return all;
 }
 
 /// From every kind of file to every other, and back to the first by a container of these.
