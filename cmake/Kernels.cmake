@@ -45,12 +45,10 @@ function(gicodec_kernels name)
       # Take compilers half of their time, to see less of the same than bounds and AddressSanitizer.
       target_compile_options(${objects} PRIVATE -fno-sanitize=object-size,null,pointer-overflow)
     endif()
-    if(isa STREQUAL scalar)
-      # Its values go through memory, inlined or not; inlined they take compilers a minute.
-      target_compile_definitions(${objects} PRIVATE GICODEC_SMALL)
-    endif()
-    if(GICODEC_SANITIZE AND (NOT GICODEC_ALL_TESTS OR GICODEC_SANITIZE STREQUAL "thread"))
-      # Not all inlined, which takes compilers a quarter of their time.
+    if(isa STREQUAL scalar OR
+       (GICODEC_SANITIZE AND (NOT GICODEC_ALL_TESTS OR GICODEC_SANITIZE STREQUAL "thread")))
+      # Not all inlined, which takes compilers a quarter of their time. Values of scalar go through memory
+      # in any case.
       target_compile_definitions(${objects} PRIVATE GICODEC_SMALL)
     endif()
     if(GICODEC_FUZZ)

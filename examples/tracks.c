@@ -58,9 +58,9 @@ static int fetch(store* from, gicodec_track_receiver* receiver) {
   uint32_t list = 0;
   size_t count = 0;
   TRY(gicodec_track_receiver_requests(receiver, &list, &objects, &count));
-  for (uint32_t type = 0; list != 0 && type < 2; ++type) {
-    const gicodec_track_message* m =
-        find(from, type == 0 ? GICODEC_TRACKS_LIST : GICODEC_TRACKS_TICK, &none, 0);
+  static const uint32_t last[] = {GICODEC_TRACKS_LIST, GICODEC_TRACKS_TICK};
+  for (size_t i = 0; list != 0 && i < 2; ++i) {
+    const gicodec_track_message* m = find(from, last[i], &none, 0);
     if (m != NULL) TRY(gicodec_track_receiver_receive(receiver, m->bytes, m->size));
   }
   for (size_t i = 0; i < count; ++i) {

@@ -56,9 +56,12 @@ std::size_t one_case_in() {
 }
 
 bool Sweep::takes() {
-  // Spread: of loops within loops, every n-th would be the same ones of the inner loop.
-  const std::uint32_t spread = case_++ * 2654435761U;
-  return (spread >> 16U) % one_case_in() == 0;
+  // Spread (by MurmurHash3's last step): of loops within loops, every n-th would be the same ones
+  // of the inner loop.
+  std::uint32_t spread = case_++;
+  spread = (spread ^ spread >> 16U) * 0x85EBCA6BU;
+  spread = (spread ^ spread >> 13U) * 0xC2B2AE35U;
+  return (spread ^ spread >> 16U) % one_case_in() == 0;
 }
 
 namespace {
