@@ -59,6 +59,7 @@ constexpr Coding kCodings[] = {{"raw", 0, true},
 
 TEST(Expansion, NoiseOfEveryFormatAndShapeKeepsToTheBound) {
   Random random(71);
+  test::Sweep sweep;
   for (const auto& desc : shapes()) {
     const auto total = block_count(desc);
     std::vector<std::uint32_t> some;
@@ -66,6 +67,7 @@ TEST(Expansion, NoiseOfEveryFormatAndShapeKeepsToTheBound) {
     for (const auto& coding : kCodings) {
       if (coding.preset == std::string_view("strong") && desc.block.x > 3)
         continue;  // It takes long.
+      if (!sweep.takes()) continue;
       Texture texture(desc);
       auto created = Encoder::create(desc, options_of(coding));
       ASSERT_TRUE(created.ok()) << desc << " " << coding.backend << created.status();

@@ -49,7 +49,7 @@ bool everything() { return std::getenv("GICODEC_TEST_EVERYTHING") != nullptr; }
 
 std::size_t one_case_in() {
 #if defined(GICODEC_ASAN) || defined(GICODEC_TSAN)
-  return everything() ? 1 : 9;
+  return everything() ? 1 : 27;
 #else
   return everything() ? 1 : 3;
 #endif
