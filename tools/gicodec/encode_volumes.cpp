@@ -56,7 +56,7 @@ std::set<std::string> names_of(const VolumeDesc& volume) {
 }
 
 /// The geometry of a texture, if all its dumps agree.
-std::optional<VolumeGeometry> place_of(const StoredTexture& texture) {
+std::optional<VolumeGeometry> stored_geometry(const StoredTexture& texture) {
   for (const FrameAttribute& change : texture.changes) {
     const std::string& name = change.attribute.name;
     if (name == kOriginAttribute || name == kSpacingAttribute) return std::nullopt;
@@ -73,9 +73,9 @@ std::optional<VolumeGeometry> place_of(const StoredTexture& texture) {
 
 /// The geometry on which all textures of a volume agree, over the grid of the first.
 std::optional<VolumeGeometry> common_place(Textures textures) {
-  const auto place = place_of(*textures.front());
+  const auto place = stored_geometry(*textures.front());
   for (const StoredTexture* texture : textures) {
-    auto own = place_of(*texture);
+    auto own = stored_geometry(*texture);
     if (own) own->grid = textures.front()->info.desc.grid;
     if (own != place) return std::nullopt;
   }
