@@ -200,6 +200,15 @@ run("info", "--token-file", "token", f"{faulty.origin}/sound/x.gic")
 check(not other.requests, "no proxy sees the token")
 del os.environ["http_proxy"]
 
+# A file that grows faster than answers come.
+growing = Faulty(whole)
+run("decode", "--follow", "--frames", "2000-2999", "-o", "grows", f"{growing.origin}/grows/x.gic")
+for frame in (2000, 2345, 2999):
+    with open(f"long.dumps/b.{frame:05}.raw", "rb") as one, \
+            open(f"grows/b.{frame:05}.raw", "rb") as two:
+        check(one.read() == two.read(), f"frame {frame} of a file that grows with each request")
+check(len(growing.requests) < 200, f"{len(growing.requests)} requests for it")
+
 # A server that is away for a moment is waited for; one that never answers does not keep a user.
 run(*decode, "--follow", f"{faulty.origin}/away/x.gic")
 run("info", "--quiet", f"{faulty.origin}/whole/x.gic")

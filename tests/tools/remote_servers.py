@@ -89,6 +89,12 @@ class Handler(http.server.BaseHTTPRequestHandler):
         server.requests.append((self.path, dict(self.headers)))
         fault = self.path.split("/")[1]
         count = server.counts[fault] = server.counts.get(fault, 0) + 1
+        mark = '"one"'
+        if fault == "grows":  # with each request
+            body = body[:len(body) // 2 + 70_001 * count]
+            mark = f'"{len(body)}"'
+            if self.headers.get("If-Range", mark) != mark:
+                return self.answer(200, body, {"ETag": mark})
         asked = re.fullmatch(r"bytes=(\d*)-(\d*)", self.headers.get("Range", ""))
         first, last = 0, len(body) - 1
         if asked and asked[1]:
@@ -96,7 +102,7 @@ class Handler(http.server.BaseHTTPRequestHandler):
         elif asked:
             first = max(0, len(body) - int(asked[2]))
         part = body[first:last + 1]
-        total, mark, extra = len(body), '"one"', {}
+        total, extra = len(body), {}
         if fault.isdigit():
             return self.answer(int(fault), b"no", {})
         if fault == "restless":  # grows with each request, and never has the file that was asked for

@@ -168,11 +168,12 @@ void HttpSource::keep(std::uint64_t offset, std::vector<std::byte> bytes) {
   held_.emplace(offset, std::move(bytes));
 }
 
-/// Drops pieces where these bytes more would be too many; not the file's head and end.
+/// Drops pieces where these bytes more would be too many; not the first and the last.
 void HttpSource::make_room(std::uint64_t bytes) {
   if (held_bytes_ + bytes <= kMaxHeld + 2 * kFirst) return;
+  const std::uint64_t last = held_.rbegin()->first;
   std::erase_if(held_, [&](const auto& piece) {
-    const bool edge = piece.first == 0 || piece.first + piece.second.size() == *size_;
+    const bool edge = piece.first == 0 || piece.first == last;
     if (!edge) held_bytes_ -= piece.second.size();
     return !edge;
   });
@@ -281,7 +282,8 @@ bool HttpSource::bring(std::span<const ByteRange> ranges) {
   for (const ByteRange& range : joined(ranges)) {
     for (std::uint64_t done = 0; done < range.size && bytes < kMaxHeld;) {
       const std::uint64_t size = std::min(range.size - done, kMaxPart);
-      requests.push_back({range.offset + done, size, false, mark_});
+      // Of a file that grows the server would say that it has changed, rather than the part.
+      requests.push_back({range.offset + done, size, false, grows_ ? "" : mark_});
       done += size;
       bytes += size;
     }
@@ -299,21 +301,27 @@ bool HttpSource::bring(std::span<const ByteRange> ranges) {
 /// Sends requests, again those that fail on the way.
 bool HttpSource::bring(std::vector<HttpRequest> requests) {
   for (int tries = 0;; ++tries) {
+    const std::uint64_t known = *size_;
     std::vector<HttpAnswer> answers = ask(requests);
     std::vector<HttpRequest> again;
+    bool away = false;
     for (std::size_t i = 0; i < answers.size(); ++i) {
       failure_ = fault(answers[i], requests[i]);
-      if (failure_.empty()) {
+      const bool grown = !failure_.empty() && is_changed(answers[i]) && has_grown(known);
+      // What has grown since is the same up to there, however fast it grows.
+      if (failure_.empty() ||
+          (grown && is_part(answers[i], requests[i]) && answers[i].total >= known)) {
         keep(requests[i].first, std::move(answers[i].body));
         continue;
       }
-      const bool worth = is_transient(answers[i]) || (is_changed(answers[i]) && has_grown());
-      if (tries == tries_ || !worth) return false;
+      away = away || !grown;
+      if (tries == tries_ || (!grown && !is_transient(answers[i]))) return false;
       again.push_back(std::move(requests[i]));
-      again.back().mark = mark_;
+      again.back().mark.clear();
     }
+    failure_.clear();
     if (again.empty()) return true;
-    pause(tries);
+    if (away) pause(tries);
     requests = std::move(again);
   }
 }
@@ -321,34 +329,34 @@ bool HttpSource::bring(std::vector<HttpRequest> requests) {
 bool HttpSource::refresh() {
   failure_.clear();
   if (!size_) return true;
-  // The last bytes again: a file that has others is another.
+  // The last bytes that are held again: a file that has others is another.
   constexpr std::uint64_t kOverlap = 64;
-  const std::uint64_t known = std::min(kOverlap, *size_), from = *size_ - known;
-  const HttpRequest request{from, known + kFirst, false, ""};
+  const auto& [offset, last] = *held_.rbegin();
+  const std::uint64_t end = offset + last.size();
+  const auto known = std::min<std::uint64_t>(kOverlap, last.size());
+  const HttpRequest request{end - known, known + kFirst, false, ""};
   HttpAnswer answer = std::move(ask_again({&request, 1})[0]);
   if (answer.status != 206 || !answer.failure.empty()) {
     failure_ = answer.status == 0 ? answer.failure : status_text(answer);
     return false;
   }
-  std::vector<std::byte> before(static_cast<std::size_t>(known));
-  const std::uint64_t at = std::exchange(at_, from);
-  refreshing_ = true;
-  const auto got = read(before);
-  refreshing_ = false;
-  at_ = at;
-  const bool grown = answer.total > size_ || (answer.total == size_ && answer.mark == mark_);
-  const bool same = got.ok() && answer.first == from && grown &&
-                    answer.body.size() == std::min(request.size, *answer.total - from) &&
-                    std::equal(before.begin(), before.end(), answer.body.begin());
+  const bool grown = answer.total > size_;
+  const bool same =
+      (grown || (answer.total == size_ && answer.mark == mark_)) && answer.first == request.first &&
+      answer.body.size() == std::min(request.size, *answer.total - request.first) &&
+      std::equal(last.end() - static_cast<std::ptrdiff_t>(known), last.end(), answer.body.begin());
   if (!same) {
     failure_ = "was replaced by another file; run the command again";
     return false;
   }
-  answer.body.erase(answer.body.begin(), answer.body.begin() + static_cast<std::ptrdiff_t>(known));
-  make_room(answer.body.size());
-  keep(*size_, std::move(answer.body));
+  if (const std::uint64_t old = known + *size_ - end; old < answer.body.size()) {
+    answer.body.erase(answer.body.begin(), answer.body.begin() + static_cast<std::ptrdiff_t>(old));
+    make_room(answer.body.size());
+    keep(*size_, std::move(answer.body));
+  }
   size_ = answer.total;
   mark_ = answer.mark;
+  grows_ = grows_ || grown;
   return true;
 }
 
@@ -358,14 +366,18 @@ bool HttpSource::is_changed(const HttpAnswer& answer) const {
          (answer.status == 206 && (answer.total != size_ || answer.mark != mark_));
 }
 
-/// True if the file is the same with more at its end. Keeps failure_.
-bool HttpSource::has_grown() {
-  if (refreshing_) return false;  // else a server that changes its mind each time never ends
+/// True if the file is the same with more at its end than what was known. Keeps failure_.
+bool HttpSource::has_grown(std::uint64_t known) {
   const std::string failure = failure_;
-  const auto before = size_;
-  const bool grown = refresh() && *size_ > *before;
+  const bool grown = *size_ > known || (refresh() && *size_ > known);
   failure_ = failure;
   return grown;
+}
+
+/// True for the bytes that were asked for, of any state of the file.
+bool HttpSource::is_part(const HttpAnswer& answer, const HttpRequest& request) {
+  return answer.status == 206 && answer.failure.empty() && answer.first == request.first &&
+         !answer.more && answer.body.size() == request.size;
 }
 
 /// What is wrong with an answer; empty: nothing.
@@ -375,7 +387,7 @@ std::string HttpSource::fault(const HttpAnswer& answer, const HttpRequest& reque
   }
   if (is_changed(answer)) return "changed while it was read; run the command again";
   if (answer.status != 206) return status_text(answer);
-  if (answer.first != request.first || answer.more || answer.body.size() != request.size) {
+  if (!is_part(answer, request)) {
     return "the server sends other bytes than those it was asked for";
   }
   return {};

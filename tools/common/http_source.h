@@ -61,7 +61,8 @@ class HttpSource final : public Source {
   [[nodiscard]] bool bring(std::span<const ByteRange> ranges);
   [[nodiscard]] bool bring(std::vector<HttpRequest> requests);
   [[nodiscard]] bool is_changed(const HttpAnswer& answer) const;
-  [[nodiscard]] bool has_grown();
+  [[nodiscard]] bool has_grown(std::uint64_t known);
+  [[nodiscard]] static bool is_part(const HttpAnswer& answer, const HttpRequest& request);
   [[nodiscard]] std::string fault(const HttpAnswer& answer, const HttpRequest& request) const;
   [[nodiscard]] const std::vector<std::byte>* piece_at(std::uint64_t offset,
                                                        std::size_t& skipped) const;
@@ -77,7 +78,7 @@ class HttpSource final : public Source {
   std::map<std::uint64_t, std::vector<std::byte>> held_;  ///< by offset, apart from each other
   std::uint64_t held_bytes_ = 0;
   std::uint64_t at_ = 0;
-  bool refreshing_ = false;
+  bool grows_ = false;
   std::uint64_t window_;  ///< bytes to ask for where nothing was planned
   std::string failure_;
   Cost cost_;
