@@ -134,6 +134,8 @@ Status TrackReceiver::State::take(TrackTick said) {
     return Status::ok;
   }
   if (said.scrolls.size() != table->list().volumes.size()) return Status::corrupt;
+  // The one before tells of changes that this one does not.
+  if (new_tick && tick && said.round > tick->round && rounds++ < kMaxRounds) confirm(*tick);
   // A list is published after the tick that ends its round, and may be lost.
   lists_missed = said.round > table->list().round ? lists_missed + 1 : 0;
   if (lists_missed >= kFirstPatience) wants_list = true;
@@ -279,7 +281,7 @@ std::uint64_t TrackReceiver::wanted_changes() const noexcept { return state_->ch
 void TrackReceiver::State::request(const TrackUnit& unit, const Track& track,
                                    std::vector<TrackRequests::Object>& out) const {
   const LastObject last = tick ? last_object(*tick, track.stream) : LastObject{};
-  if (has_all(track, track.at)) return;
+  if (tick && has_all(*tick, track, track.at)) return;
   const bool knows_group = track.at != 0 && track.at >= track.snapshot;
   const std::uint32_t held = track.at > track.snapshot ? track.number : 0;
   std::uint32_t next = 0;

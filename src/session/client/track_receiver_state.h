@@ -18,6 +18,8 @@ inline constexpr std::uint32_t kFirstPatience = 2, kLastPatience = 16;
 /// Ticks for which a client that begins waits until all that it wants has come.
 inline constexpr std::uint32_t kFirstTicks = 10;
 
+/// Rounds that may end between two updates to the client; of more, snapshots are requested.
+inline constexpr std::uint32_t kMaxRounds = 32;
 /// Objects that are requested after a tick, but for the last track's.
 inline constexpr std::size_t kMaxRequests = 8192;
 
@@ -71,7 +73,9 @@ struct TrackReceiver::State {
                std::vector<TrackRequests::Object>& out) const;
   void count_waiting() noexcept;
   void forget_all_waiting() noexcept;
-  [[nodiscard]] bool has_all(const Track& track, std::uint64_t end) const noexcept;
+  [[nodiscard]] bool has_all(const TrackTick& as_of, const Track& track,
+                             std::uint64_t end) const noexcept;
+  void confirm(const TrackTick& as_of) noexcept;
   [[nodiscard]] TrackWay way_of(const Track& track) const noexcept;
   [[nodiscard]] static std::uint64_t reach_from(const Track& track, std::uint64_t from,
                                                 std::uint64_t last) noexcept;
@@ -90,6 +94,7 @@ struct TrackReceiver::State {
   std::uint32_t lists_missed = 0;  ///< ticks that named a later list
   bool has_news = false;           ///< something came since the last advance()
   bool new_tick = false;
+  std::uint32_t rounds = 0;           ///< that ended since the last advance()
   std::optional<std::uint32_t> sync;  ///< of the client's last Hello or Resync
   std::uint32_t number = 0;           ///< of the last update to it
   bool welcomed = false;              ///< the client knows the table

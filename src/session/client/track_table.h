@@ -24,7 +24,8 @@ struct Track {
   StreamId stream = {};
   std::uint64_t at = 0;         ///< update of the last object that the client got; 0: none
   std::uint32_t number = 0;     ///< of that object
-  std::uint64_t confirmed = 0;  ///< the last tick as of which the client had all of the track
+  std::uint64_t confirmed = 0;  ///< a tick as of which `last` was the last object; 0: none
+  std::uint64_t last = 0;       ///< its update
   std::uint64_t snapshot = 0;   ///< update of the last one, by the list; 0: there is none
   bool asks = false;            ///< objects are to be requested
   HeldState sent = {};          ///< that the client holds after that object

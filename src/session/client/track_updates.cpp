@@ -44,17 +44,30 @@ std::uint64_t TrackReceiver::State::reach_from(const Track& track, std::uint64_t
 }
 
 /// True if a track that ends with this update has all that the tick tells of.
-bool TrackReceiver::State::has_all(const Track& track, std::uint64_t end) const noexcept {
-  if (const std::uint64_t changed = last_object(*tick, track.stream).update; changed != 0)
+bool TrackReceiver::State::has_all(const TrackTick& as_of, const Track& track,
+                                   std::uint64_t end) const noexcept {
+  if (const std::uint64_t changed = last_object(as_of, track.stream).update; changed != 0)
     return end >= changed;
   // It has not changed since the round.
-  if (track.confirmed >= tick->round && track.confirmed != 0) return true;
-  return table->list().round >= tick->round && end >= track.snapshot;
+  if (track.confirmed >= as_of.round && track.confirmed != 0 && end >= track.last) return true;
+  return table->list().round >= as_of.round && end >= track.snapshot;
+}
+
+/// Notes which tracks were whole as of an earlier tick, with what waits.
+void TrackReceiver::State::confirm(const TrackTick& as_of) noexcept {
+  for (TrackUnit& unit : table->units()) {
+    if (!unit.wanted) continue;
+    for (Track& track : unit.tracks) {
+      if (track.at == 0) continue;
+      const std::uint64_t end = reach_from(track, track.at, as_of.update);
+      if (has_all(as_of, track, end)) track.confirmed = as_of.update, track.last = end;
+    }
+  }
 }
 
 TrackWay TrackReceiver::State::way_of(const Track& track) const noexcept {
   const TrackWay held{track.at == 0 ? 0 : reach_from(track, track.at, tick->update), false};
-  if (has_all(track, held.end) || !track.newest_snapshot) return held;
+  if (has_all(*tick, track, held.end) || !track.newest_snapshot) return held;
   const std::uint64_t snapshot = track.newest_snapshot->object.update;
   if (snapshot <= held.end || snapshot > tick->update) return held;
   return {reach_from(track, snapshot, tick->update), true};
@@ -126,7 +139,8 @@ Status TrackReceiver::State::advance(std::vector<Message>& out) {
     std::vector<TrackWay> ways;
     for (const Track& track : unit.tracks) ways.push_back(way_of(track));
     bool has = follow_presence(unit, ways);
-    for (std::size_t t = 0; t < ways.size(); ++t) has = has && has_all(unit.tracks[t], ways[t].end);
+    for (std::size_t t = 0; t < ways.size(); ++t)
+      has = has && has_all(*tick, unit.tracks[t], ways[t].end);
     if (!has) {
       all = false;
       if (!new_tick) continue;
@@ -141,7 +155,7 @@ Status TrackReceiver::State::advance(std::vector<Message>& out) {
   }
   const bool waits = !all && !begun && ticks - ticks_before < kFirstTicks;
   if (!welcomed || waits) {
-    new_tick = has_news = false;
+    new_tick = has_news = false, rounds = 0;
     return Status::ok;
   }
   std::stable_sort(steps.begin(), steps.end(), [](const TrackStep& a, const TrackStep& b) {
@@ -174,6 +188,7 @@ Status TrackReceiver::State::advance(std::vector<Message>& out) {
       track.asks = false;
       track.at = ways[t].end;
       track.confirmed = tick->update;
+      track.last = track.at;
       if (track.newest_snapshot && track.newest_snapshot->object.update <= track.at) {
         waiting_bytes -= memory_of(*track.newest_snapshot);
         track.newest_snapshot.reset();
@@ -184,7 +199,7 @@ Status TrackReceiver::State::advance(std::vector<Message>& out) {
       }
     }
   }
-  new_tick = has_news = false;
+  new_tick = has_news = false, rounds = 0;
   begun = true;
   return Status::ok;
 }
