@@ -48,6 +48,8 @@ export class Subjects {
 /** A user of the servers' who lacks a right does not get it by waiting. */
 const isRefused = (error) => /permission/i.test(`${error?.name} ${error?.message}`);
 
+const closed = () => new Error('the connection to NATS was closed');
+
 /** A connection to NATS as a TrackConnection needs it. */
 export class NatsBus {
   #nats;
@@ -60,7 +62,7 @@ export class NatsBus {
     this.#nats = nats;
     this.#on = on;
     this.#watch().catch((error) => this.#fail(error));
-    nats.closed().then((error) => this.#fail(error ?? new Error('the connection to NATS was closed')));
+    nats.closed().then((error) => this.#fail(error ?? closed()));
   }
 
   async #watch() {
@@ -73,6 +75,7 @@ export class NatsBus {
   }
 
   subscribe(subject) {
+    if (this.#nats.isClosed()) return this.#fail(closed());
     const callback = (error, message) => (error ? this.#fail(error) : this.#take(message.data));
     this.#subscriptions.set(subject, this.#nats.subscribe(subject, {callback}));
   }
