@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import resource
 import shutil
 import socket
 import subprocess
@@ -175,9 +176,14 @@ for fault, says in {
     run(*decode, f"{faulty.origin}/{fault}/x.gic", code=4, says=[says])
 run(*decode, f"{faulty.origin}/other/x.gic", code=3)
 run("info", f"{faulty.origin}/endless/x.gic", code=3, says=["is not a .gic container"])
-limited = subprocess.run(["prlimit", "--as=2000000000", gicodec, *decode,
-                          f"{faulty.origin}/endless/x.gic"], capture_output=True, timeout=60)
-check(limited.returncode == 3, "an endless file costs no memory")
+with subprocess.Popen([gicodec, *decode, f"{faulty.origin}/endless/x.gic"], stderr=subprocess.DEVNULL) as endless:
+    most = 0  # bytes in memory; sanitizers reserve more
+    while endless.poll() is None and most < 1 << 30:
+        with open(f"/proc/{endless.pid}/statm") as file:
+            most = max(most, int(file.read().split()[1]) * resource.getpagesize())
+        time.sleep(0.01)
+    endless.kill()
+check(endless.returncode == 3, f"an endless file costs no memory, {most} bytes seen")
 
 # A token goes to the server that was named, over TLS or on this machine, and to nobody else.
 other = Faulty(faulty.body)
