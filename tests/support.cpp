@@ -74,15 +74,8 @@ constexpr std::array<std::uint16_t, 8> kSpecialHalves{0x7C01, 0x7E55, 0xFFFF, 0x
 constexpr std::array<std::uint32_t, 8> kSpecialFloats{
     0x7F800001, 0x7FC0BEEF, 0xFFFFFFFF, 0xFF800000, 0x80000000, 0x00000001, 0x807FFFFF, 0x7FA00000};
 
-void fill_noise(std::span<std::byte> bytes, Random& random) {
-  for (std::size_t at = 0; at < bytes.size(); at += sizeof(std::uint64_t)) {
-    const std::uint64_t eight = random();
-    std::memcpy(&bytes[at], &eight, std::min(sizeof eight, bytes.size() - at));
-  }
-}
-
 void fill_record(std::span<std::byte> record, Fill fill, Random& random) {
-  fill_noise(record, random);
+  for (auto& byte : record) byte = static_cast<std::byte>(random());
   if (fill == Fill::zero) std::fill(record.begin(), record.end(), std::byte{0});
   if (fill == Fill::small) {
     std::fill(record.begin(), record.end(), std::byte{0});
@@ -123,7 +116,7 @@ std::vector<std::uint32_t> listed_blocks(const Decoder& decoder,
 
 Bytes noise(Random& random, std::size_t size) {
   Bytes bytes(size);
-  fill_noise(bytes, random);
+  for (auto& byte : bytes) byte = static_cast<std::byte>(random());
   return bytes;
 }
 
@@ -263,6 +256,18 @@ void Texture::fill_band(std::uint32_t block) {
     copy(k, n - 1, n - 1 - k, n - 2);
     copy(0, k, 1, n - 1 - k);
     copy(n - 1, k, n - 2, n - 1 - k);
+  }
+}
+
+void Texture::fill_fast(Random& random) {
+  Bytes records(guarded_bytes(desc_));
+  for (std::uint32_t block = 0; block < block_count(desc_); ++block) {
+    for (std::size_t at = 0; at < records.size(); at += sizeof(std::uint64_t)) {
+      const std::uint64_t eight = random();
+      std::memcpy(&records[at], &eight, std::min(sizeof eight, records.size() - at));
+    }
+    set_block(block, records);
+    fill_band(block);
   }
 }
 

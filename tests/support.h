@@ -105,6 +105,8 @@ class Texture {
   void fill_band(std::uint32_t block);
   /// Noise everywhere, guard bands by the rule.
   void fill(Fill fill, Random& random);
+  /// Noise as well, of an eighth of the random numbers.
+  void fill_fast(Random& random);
 
   [[nodiscard]] bool padding_untouched() const;
 

@@ -150,7 +150,7 @@ class PathToServer {
   }
 
  protected:
-  virtual void paint(Texture& texture, Random& random) { texture.fill(Fill::noise, random); }
+  virtual void paint(Texture& texture, Random& random) { texture.fill_fast(random); }
   virtual void after_update() {}
   virtual void tick() {}
   [[nodiscard]] Server& server() { return *server_; }
