@@ -20,7 +20,6 @@ enum NalType : unsigned {
   kPrefixSei = 39,
   kSuffixSei = 40,
 };
-constexpr std::array kStartCode{std::byte{0}, std::byte{0}, std::byte{0}, std::byte{1}};
 constexpr std::size_t kHeaderBytes = 2;
 
 unsigned type_of(NalUnit unit) noexcept { return std::to_integer<unsigned>(unit[0]) >> 1 & 0x3F; }

@@ -6,12 +6,15 @@
 
 #include <gicodec/status.h>
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
 
 namespace gicodec::hevc {
 
+/// Comes before each NAL unit.
+inline constexpr std::array kStartCode{std::byte{0}, std::byte{0}, std::byte{0}, std::byte{1}};
 using NalUnit = std::span<const std::byte>;  ///< two header bytes and payload, no start code
 
 struct AccessUnit {

@@ -40,17 +40,16 @@ class FfmpegDecoder final : public PictureDecoder {
 
  private:
   Status fill_packet(const AccessUnit& unit) {
-    constexpr std::uint8_t kStartCode[] = {0, 0, 0, 1};
     std::size_t size = 0;
-    for (const NalUnit& nal : unit.units) size += sizeof kStartCode + nal.size();
+    for (const NalUnit& nal : unit.units) size += kStartCode.size() + nal.size();
     if (size > INT_MAX / 2) return Status::limit_exceeded;
     av_packet_unref(packet_.get());
     if (av_new_packet(packet_.get(), static_cast<int>(size)) != 0) return Status::out_of_memory;
     std::uint8_t* to = packet_->data;
     for (const NalUnit& nal : unit.units) {
-      std::memcpy(to, kStartCode, sizeof kStartCode);
-      std::memcpy(to + sizeof kStartCode, nal.data(), nal.size());
-      to += sizeof kStartCode + nal.size();
+      std::memcpy(to, kStartCode.data(), kStartCode.size());
+      std::memcpy(to + kStartCode.size(), nal.data(), nal.size());
+      to += kStartCode.size() + nal.size();
     }
     return Status::ok;
   }
