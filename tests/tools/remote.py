@@ -178,7 +178,8 @@ run(*decode, f"{faulty.origin}/other/x.gic", code=3)
 run("info", f"{faulty.origin}/endless/x.gic", code=3, says=["is not a .gic container"])
 with subprocess.Popen([gicodec, *decode, f"{faulty.origin}/endless/x.gic"], stderr=subprocess.DEVNULL) as endless:
     most = 0  # bytes in memory; sanitizers reserve more
-    while endless.poll() is None and most < 1 << 30:
+    until = time.monotonic() + 60
+    while endless.poll() is None and most < 1 << 30 and time.monotonic() < until:
         with open(f"/proc/{endless.pid}/statm") as file:
             most = max(most, int(file.read().split()[1]) * resource.getpagesize())
         time.sleep(0.01)
